@@ -1,0 +1,1 @@
+"""Grammar files of the part-program dialects; `nccompile.parser` loads them."""

@@ -1,0 +1,97 @@
+"""Hot sequential loops on arrays: plain Python by meaning, compiled by numba when the work is large.
+
+A function marked `@kernel` is ordinary Python on numpy arrays and floats.  One switch a process decides
+how all of them run:
+
+    python   the function as written; nothing is imported, nothing compiled (small programs start at once)
+    numba    compiled on first call, machine code kept in a cache folder for the next process
+
+`expect_work(items)` is called once by whoever knows the size of the job; above `LARGE` items it turns the
+switch to numba.  NCCOMPILE_KERNELS=python|numba fixes it for the process.  Both ways give the same bits:
+kernels use only IEEE operations and libm, no fast-math, no `**`, no `math.hypot`, no exceptions.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Generic, ParamSpec, TypeVar
+
+__all__ = ["LARGE", "Kernel", "compiled", "expect_work", "kernel", "use"]
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+LARGE = 20_000
+"""Items of work (segments, cycles) above which compiled kernels pay for importing numba."""
+
+_state = {"compiled": os.environ.get("NCCOMPILE_KERNELS") == "numba"}
+
+
+class Kernel(Generic[P, R]):
+    """A function that runs as Python or as machine code, by the switch of this module."""
+
+    def __init__(self, function: Callable[P, R]) -> None:
+        self.py_func = function
+        self._dispatcher: Any = None
+        functools.update_wrapper(self, function)
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        if _state["compiled"]:
+            return self.dispatcher(*args, **kwargs)  # type: ignore[no-any-return]
+        return self.py_func(*args, **kwargs)
+
+    @property
+    def dispatcher(self) -> Any:
+        """The compiled twin, made on first use."""
+        if self._dispatcher is None:
+            numba = _numba()
+            self._dispatcher = numba.njit(cache=True, nogil=True)(self.py_func)
+        return self._dispatcher
+
+    @property
+    def _numba_type_(self) -> Any:
+        # numba asks globals of a compiled function for their type here: a kernel called by a kernel
+        # is its compiled twin.
+        return self.dispatcher._numba_type_
+
+
+def kernel(function: Callable[P, R]) -> Kernel[P, R]:
+    """Marks a function as a kernel (see the module's docstring)."""
+    return Kernel(function)
+
+
+def compiled() -> bool:
+    """Whether kernels run as machine code in this process."""
+    return _state["compiled"]
+
+
+def use(*, compiled: bool) -> None:
+    """Sets the switch; for tests and benchmarks.  NCCOMPILE_KERNELS has no say after this."""
+    _state["compiled"] = compiled
+
+
+def expect_work(items: int) -> None:
+    """Announces a job of `items` segments or cycles: a large one turns the compiled kernels on."""
+    if items >= LARGE and os.environ.get("NCCOMPILE_KERNELS") != "python":
+        _state["compiled"] = True
+
+
+@functools.cache
+def _numba() -> Any:
+    """Imports numba with a cache folder of our own.
+
+    numba's cache looks only at the file of the kernel itself, so a changed callee would leave stale machine
+    code; a folder named after the content of all kernels cannot be stale.
+    """
+    sources = b"".join(p.read_bytes() for p in sorted(Path(__file__).parent.glob("*.py")))
+    digest = hashlib.sha256(sources + sys.version.encode()).hexdigest()[:16]
+    base = os.environ.get("NCCOMPILE_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(base) / "nccompile" / digest))
+    import numba  # noqa: PLC0415
+
+    return numba
