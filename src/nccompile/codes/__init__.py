@@ -1,0 +1,20 @@
+"""The register of diagnostic codes: one page a code, printed by `nccompile explain`.
+
+Codes by stage: NC0xx syntax, NC1xx modal state and words, NC2xx geometry, NC3xx correction and fitting,
+NC4xx limits and safety areas, NC5xx dynamics, NC6xx import, NC7xx runtime and drives.  A code is never used
+again; the module of a stage holds its pages.
+"""
+
+from __future__ import annotations
+
+from nccompile.codes import dynamics, geometry, limits, runtime, syntax, words
+from nccompile.codes.page import Page
+
+__all__ = ["PAGES", "Page"]
+
+PAGES: dict[str, Page] = {
+    page.code: page
+    for stage in (syntax, words, geometry, limits, dynamics, runtime)
+    for page in stage.PAGES
+}
+"""All pages by code, in the order of the codes."""

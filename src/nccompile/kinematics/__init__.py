@@ -1,0 +1,1 @@
+"""Path point to axis positions and back; one file a machine kind."""
