@@ -7,7 +7,7 @@ starts at `Toolpath.start`.  A jump without motion (G92) is a segment of its own
 gap.  Units: mm, mm/s, mm/s², radians inside the curve table; rotary axes (A, B, C) in degrees.
 
     columns   one row a segment: kind, target, curve, length, feed, accel, decel, mark, radius, profile, line
-    planned   v_limit, v_end (absent before velocity planning)
+    planned   v_limit, v_junction, v_end (absent before velocity planning)
     curves    rows for segments that are not straight, found by the column `curve`
     events    switch points, M functions and dwells, keyed by the segment's row in this chunk
 
@@ -174,8 +174,10 @@ class Toolpath:
     accel, decel: f8 (n,) limits [mm/s²], 0 if none was programmed;  mark: u2 (n,) `Mark` bits;
     radius: f8 (n,) D in force [mm];  profile: u2 (n,) bit i set: axis i runs in the S-profile (SoftMotion
     §6.2.8);  line: i4 (n,) source line, from 1;
-    v_limit, v_end: f8 (n,) greatest velocity of the segment and velocity at its end [mm/s], or None before
-    planning (then `accel` and `decel` are the planned ones, all > 0);
+    v_limit, v_junction, v_end: f8 (n,) [mm/s], None before planning: the greatest velocity that machine and
+    geometry allow on the segment whatever the feed, the same at its end, and the planned velocity at its end;
+    in a planned path `feed`, `accel` and `decel` hold the values in force, all > 0 where the segment moves, and
+    the segment runs at min(override * feed, v_limit);
     first: index of row 0 in the whole path;  names: what `Events.o` points to.
     """
 
@@ -195,6 +197,7 @@ class Toolpath:
     curves: Curves = field(default_factory=Curves.empty)
     events: Events = field(default_factory=Events.empty)
     v_limit: Floats | None = None
+    v_junction: Floats | None = None
     v_end: Floats | None = None
     first: int = 0
     names: tuple[str, ...] = ()
@@ -250,6 +253,7 @@ class Toolpath:
                 e.kind[lo:hi], e.number[lo:hi], e.position[lo:hi], e.k[lo:hi], e.l[lo:hi], e.o[lo:hi],
             ),
             v_limit=None if self.v_limit is None else self.v_limit[pick],
+            v_junction=None if self.v_junction is None else self.v_junction[pick],
             v_end=None if self.v_end is None else self.v_end[pick],
             first=self.first + begin,
             names=self.names,
@@ -285,6 +289,7 @@ class Toolpath:
                   for name in ("kind", "number", "position", "k", "l", "o")),
             ),
             v_limit=stack("v_limit") if planned else None,
+            v_junction=stack("v_junction") if planned else None,
             v_end=stack("v_end") if planned else None,
             first=chunks[0].first,
             names=max((c.names for c in chunks), key=len),

@@ -1,0 +1,117 @@
+"""The time law of one segment: ramp, cruise, ramp, in closed form (SoftMotion §6.2.8).
+
+      v
+   vp |      ________            ramp 1   t in 0 .. t1          v0 -> vp
+      |     /        \\           cruise   t in t1 .. t1+t2      vp
+   v1 |    /          \\          ramp 2   t in .. t1+t2+t3      vp -> v1
+   v0 |___/
+      +---------------------- t
+
+Two laws share the times: a trapezoid ramp changes v linearly, a sigmoid ramp as sin².  A sigmoid ramp from
+va to vb in T covers (va + vb) T / 2 as the linear one does, so both laws take the same time for the same path;
+the sigmoid's acceleration is continuous and peaks at pi/2 times the linear one.
+
+The offline sampler and the cyclic interpolator evaluate these functions, so they agree to the bit.
+Own derivation from s' = v, v' = a.
+"""
+
+from __future__ import annotations
+
+from math import pi, sin, sqrt
+
+from nccompile.kernels import kernel
+
+__all__ = ["SIGMOID", "TRAPEZOID", "law_distance", "law_times", "law_velocity", "peak_factor"]
+
+TRAPEZOID = 0
+SIGMOID = 1
+
+
+def peak_factor(law: int) -> float:
+    """Greatest acceleration of a ramp over its mean: 1 for the trapezoid, pi/2 for the sigmoid."""
+    return pi / 2.0 if law == SIGMOID else 1.0
+
+
+@kernel
+def law_times(
+    length: float, v0: float, v_top: float, v_end: float, accel: float, decel: float
+) -> tuple[float, float, float, float, float]:
+    """Times and velocities (t1, t2, t3, vp, v1) of the fastest law over `length` from v0 to v_end below v_top.
+
+    Peak without cruise:  (vp² - v0²) / 2a + (vp² - v1²) / 2d = L
+                          vp² = (2 a d L + d v0² + a v1²) / (a + d)
+
+    What cannot be reached is approached as far as the ramps allow: v1 is the reached end velocity.  If v0 is
+    above v_top (an override was lowered) ramp 1 brakes.  length > 0, accel, decel > 0.
+    """
+    v1 = v_end
+    reach = sqrt(v0 * v0 + 2.0 * accel * length)
+    v1 = min(v1, reach)
+    brake2 = v0 * v0 - 2.0 * decel * length
+    if v1 * v1 < brake2:  # cannot get that slow within the segment: brake all along
+        v1 = sqrt(brake2)
+        return 0.0, 0.0, (v0 - v1) / decel, v0, v1
+    if v0 > v_top:
+        ramp = (v0 * v0 - v_top * v_top) / (2.0 * decel)
+        v1 = min(v1, v_top)
+        last = (v_top * v_top - v1 * v1) / (2.0 * decel)
+        if ramp + last < length:
+            return (v0 - v_top) / decel, (length - ramp - last) / v_top, (v_top - v1) / decel, v_top, v1
+        return 0.0, 0.0, (v0 - sqrt(max(brake2, v1 * v1))) / decel, v0, sqrt(max(brake2, v1 * v1))
+    peak2 = (2.0 * accel * decel * length + decel * v0 * v0 + accel * v1 * v1) / (accel + decel)
+    vp = min(v_top, sqrt(peak2))
+    vp = max(vp, v0, v1)
+    t1 = (vp - v0) / accel
+    t3 = (vp - v1) / decel
+    rest = length - 0.5 * (v0 + vp) * t1 - 0.5 * (vp + v1) * t3
+    t2 = max(rest, 0.0) / vp if vp >= v_top else 0.0
+    return t1, t2, t3, vp, v1
+
+
+@kernel
+def _ramp_distance(law: int, t: float, duration: float, va: float, vb: float) -> float:
+    """Distance after `t` of a ramp from va to vb that lasts `duration`.
+
+    trapezoid  s = va t + (vb - va) t² / (2 T)
+    sigmoid    s = va t + (vb - va) (t / 2 - T / (2 pi) sin(pi t / T))
+    """
+    if duration <= 0.0:
+        return 0.0
+    if law == SIGMOID:
+        return va * t + (vb - va) * (0.5 * t - duration / (2.0 * pi) * sin(pi * t / duration))
+    return va * t + (vb - va) * t * t / (2.0 * duration)
+
+
+@kernel
+def law_distance(
+    law: int, t: float, t1: float, t2: float, t3: float, v0: float, vp: float, v1: float
+) -> float:
+    """Distance covered `t` seconds after the start of a law."""
+    if t <= t1:
+        return _ramp_distance(law, t, t1, v0, vp)
+    s = 0.5 * (v0 + vp) * t1
+    if t <= t1 + t2:
+        return s + vp * (t - t1)
+    t_ramp = min(t - t1 - t2, t3)
+    return s + vp * t2 + _ramp_distance(law, t_ramp, t3, vp, v1)
+
+
+@kernel
+def law_velocity(
+    law: int, t: float, t1: float, t2: float, t3: float, v0: float, vp: float, v1: float
+) -> float:
+    """Path velocity `t` seconds after the start of a law."""
+    if t < t1:
+        part = t / t1
+        va, vb = v0, vp
+    elif t <= t1 + t2:
+        return vp
+    elif t < t1 + t2 + t3:
+        part = (t - t1 - t2) / t3
+        va, vb = vp, v1
+    else:
+        return v1
+    if law == SIGMOID:
+        root = sin(0.5 * pi * part)
+        return va + (vb - va) * root * root
+    return va + (vb - va) * part
