@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from math import pi
 
 import numpy as np
@@ -74,7 +75,7 @@ def same(one: Toolpath, other: Toolpath) -> bool:
         "profile",
         "line",
     ]
-    pairs = [(getattr(one, n), getattr(other, n)) for n in (*plain, "v_limit", "v_junction", "v_end")]
+    pairs = [(getattr(one, n), getattr(other, n)) for n in plain]
     pairs += [(getattr(one.curves, n), getattr(other.curves, n)) for n in ("plane", "parameters")]
     events = ("segment", "kind", "number", "position", "k", "l", "o")
     pairs += [(getattr(one.events, n), getattr(other.events, n)) for n in events]
