@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from nccompile.machine.extents import extents
 from nccompile.toolpath import EventKind, Floats, Kind, Toolpath
-from nccompile.toolpath.extents import extents
 
 __all__ = ["Totals", "TotalsGatherer"]
 
@@ -48,7 +48,8 @@ class TotalsGatherer:
         self.length = _add_up(self.length, chunk.length)
         self.rapid_length = _add_up(self.rapid_length, chunk.length[chunk.kind == Kind.POSITIONING])
         low, high = extents(chunk)
-        for axis, least, greatest in zip(chunk.axes, low.tolist(), high.tolist(), strict=True):
+        box = np.vstack([chunk.start, low]).min(axis=0), np.vstack([chunk.start, high]).max(axis=0)
+        for axis, least, greatest in zip(chunk.axes, box[0].tolist(), box[1].tolist(), strict=True):
             old = self.box.get(axis, (least, greatest))
             self.box[axis] = (min(old[0], least), max(old[1], greatest))
         self.switches += int(np.count_nonzero(chunk.events.kind == EventKind.SWITCH))
