@@ -26,6 +26,9 @@ __all__ = ["SIGMOID", "TRAPEZOID", "law_distance", "law_times", "law_velocity", 
 TRAPEZOID = 0
 SIGMOID = 1
 
+_SLACK = 1e-9
+"""Relative rounding room in v² within which a ramp over the whole segment counts as the planned one."""
+
 
 def peak_factor(law: int) -> float:
     """Greatest acceleration of a ramp over its mean: 1 for the trapezoid, pi/2 for the sigmoid."""
@@ -48,16 +51,19 @@ def law_times(
     reach = sqrt(v0 * v0 + 2.0 * accel * length)
     v1 = min(v1, reach)
     brake2 = v0 * v0 - 2.0 * decel * length
-    if v1 * v1 < brake2:  # cannot get that slow within the segment: brake all along
-        v1 = sqrt(brake2)
-        return 0.0, 0.0, (v0 - v1) / decel, v0, v1
+    if brake2 - v1 * v1 > -_SLACK * v0 * v0:
+        # One ramp all along.  Within rounding of the planned ramp the end velocity is kept exactly, so that a
+        # planned stop is a stop; beyond it the segment is too short to get that slow.
+        if brake2 - v1 * v1 > _SLACK * v0 * v0:
+            v1 = sqrt(brake2)
+        return 0.0, 0.0, 2.0 * length / (v0 + v1), v0, v1
     if v0 > v_top:
         ramp = (v0 * v0 - v_top * v_top) / (2.0 * decel)
         v1 = min(v1, v_top)
         last = (v_top * v_top - v1 * v1) / (2.0 * decel)
         if ramp + last < length:
             return (v0 - v_top) / decel, (length - ramp - last) / v_top, (v_top - v1) / decel, v_top, v1
-        return 0.0, 0.0, (v0 - sqrt(max(brake2, v1 * v1))) / decel, v0, sqrt(max(brake2, v1 * v1))
+        return 0.0, 0.0, 2.0 * length / (v0 + v1), v0, v1
     peak2 = (2.0 * accel * decel * length + decel * v0 * v0 + accel * v1 * v1) / (accel + decel)
     vp = min(v_top, sqrt(peak2))
     vp = max(vp, v0, v1)

@@ -28,6 +28,7 @@ class AxisLimits:
     """Limits of k axes, f8 arrays of shape (k,), in mm (or deg) and seconds.
 
     An axis that the machine does not have is without limits (inf): `check_axes` reports it if it moves.
+    `rapid` is inf where the machine leaves the velocity of G0 to the program's F, as SoftMotion does.
     """
 
     velocity: Floats
@@ -39,7 +40,7 @@ class AxisLimits:
 def limits(machine: Machine, axes: Sequence[str]) -> AxisLimits:
     """The limits of the path axes `axes`, in their order."""
     rows = [
-        (a.velocity, a.acceleration, a.velocity_step, a.rapid or a.velocity)
+        (a.velocity, a.acceleration, a.velocity_step, np.inf if a.rapid is None else a.rapid)
         if (a := machine.axes.get(letter)) is not None
         else (np.inf, np.inf, np.inf, np.inf)
         for letter in axes

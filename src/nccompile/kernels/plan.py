@@ -1,0 +1,265 @@
+"""Velocity planning over rows of segments: limits, junctions, look-ahead, durations.
+
+Every function is a loop over the rows of a window; `passes.velocity` holds the window.  A segment moves along
+q(s), s the path length; with v = ds/dt an axis has velocity q' v and acceleration q' a + q'' v².
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from nccompile.kernels import kernel
+from nccompile.kernels.curves import derivative, derivative3, max_curvature
+from nccompile.kernels.timelaw import law_times
+
+__all__ = ["durations", "junctions", "look_ahead", "row_limits"]
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+Kinds = npt.NDArray[np.uint8]
+
+_POSITIONING, _ARC, _SET_POSITION, _DWELL = 0, 2, 5, 6
+_SPACE = 3
+
+_S_SLOPE = 1.875  # greatest slope of 10 w³ - 15 w⁴ + 6 w⁵
+_S_BEND = 5.773502691896258  # greatest second derivative of it, 10 / sqrt(3)
+_SAME_SLOPE = 1e-9  # slopes that differ by less are tangent: rounding of directions, not a corner
+
+_TANGENTIAL = 0.6  # on curves: share of an axis's acceleration for changing the path velocity;
+#                    0.8 is left for following the curve, since 0.6² + 0.8² = 1 and both are at right angles
+
+
+@kernel
+def row_limits(
+    kind: Kinds, start: Floats, target: Floats, curve: Ints, plane: Kinds, parameters: Floats, length: Floats,
+    profile: npt.NDArray[np.uint16], v_axis: Floats, a_axis: Floats, rapid: Floats, peak: float,
+    feed: Floats, accel: Floats, decel: Floats, v_limit: Floats, t_start: Floats, t_end: Floats,
+) -> None:  # fmt: skip
+    """Per row: the slopes q' at both ends, and what the axes allow.
+
+    start, target, t_start, t_end: Shape (n, k); v_axis, a_axis, rapid: Shape (k,), inf if not limited (rapid:
+    if the machine leaves G0 to the program's F); peak: greatest over mean acceleration of the time law.
+    Changes feed (of positionings), accel, decel; writes v_limit, t_start, t_end.
+
+    On a curve of curvature c, the tangential share at and the normal share an of an axis's limit a hold
+    at² + an² <= a²:  v_limit = sqrt(an / c); where the program accelerates less than 0.6 a, an takes the rest.
+    """
+    axes = target.shape[1]
+    for i in range(len(kind)):
+        v_limit[i] = inf
+        for a in range(axes):
+            t_start[i, a] = 0.0
+            t_end[i, a] = 0.0
+        if kind[i] >= _SET_POSITION or length[i] <= 0.0:
+            continue
+        run = float(length[i])
+        bits = int(profile[i])
+        row = int(curve[i])
+        first = second = third = -1
+        if row >= 0:
+            first, second = 0, 1
+            if plane[row] == 1:
+                first, second = 2, 0
+            elif plane[row] == 2:
+                first, second = 1, 2
+            elif plane[row] == _SPACE:
+                third = 2
+        rapid_top = inf
+        v_top = inf
+        a_top = inf
+        for a in range(axes):
+            if a == first or a == second or a == third:
+                continue
+            slope = (float(target[i, a]) - float(start[i, a])) / run
+            if slope == 0.0:
+                continue
+            size = abs(slope)
+            if (bits >> a) & 1:
+                v_top = min(v_top, v_axis[a] / (size * _S_SLOPE), sqrt(0.5 * a_axis[a] * run / (size * _S_BEND)))
+                a_top = min(a_top, 0.5 * a_axis[a] / (size * _S_SLOPE * peak))
+                rapid_top = min(rapid_top, rapid[a] / (size * _S_SLOPE))
+            else:
+                t_start[i, a] = slope
+                t_end[i, a] = slope
+                v_top = min(v_top, v_axis[a] / size)
+                a_top = min(a_top, a_axis[a] / (size * peak))
+                rapid_top = min(rapid_top, rapid[a] / size)
+        if kind[i] == _POSITIONING and rapid_top < inf:
+            feed[i] = min(rapid_top, v_top)
+        if row >= 0:
+            share = 1.0
+            other = 3 - first - second
+            if third < 0 and not (bits >> other) & 1:
+                linear = float(t_end[i, other])
+                share = sqrt(max(1.0 - linear * linear, 0.0))
+            p = parameters[row]
+            if third < 0:
+                for end in range(2):
+                    du, dv = derivative(int(kind[i]), p, float(end))
+                    size = sqrt(du * du + dv * dv)
+                    if size > 0.0:
+                        slopes = t_end if end else t_start
+                        slopes[i, first] = share * du / size
+                        slopes[i, second] = share * dv / size
+                a_plane = min(a_axis[first], a_axis[second])
+                v_plane = min(v_axis[first], v_axis[second])
+            else:
+                for end in range(2):
+                    dx, dy, dz = derivative3(int(kind[i]), p, float(end))
+                    size = sqrt(dx * dx + dy * dy + dz * dz)
+                    if size > 0.0:
+                        slopes = t_end if end else t_start
+                        slopes[i, 0] = dx / size
+                        slopes[i, 1] = dy / size
+                        slopes[i, 2] = dz / size
+                a_plane = min(a_axis[0], a_axis[1], a_axis[2])
+                v_plane = min(v_axis[0], v_axis[1], v_axis[2])
+            if share > 0.0:
+                v_top = min(v_top, v_plane / share)
+                a_top = min(a_top, _TANGENTIAL * a_plane / (share * peak))
+                bend = share * share * max_curvature(int(kind[i]), p)
+                wanted = min(max(accel[i], decel[i]), a_top) * peak * share
+                if bend > 0.0:
+                    v_top = min(v_top, sqrt(sqrt(max(a_plane * a_plane - wanted * wanted, 0.0)) / bend))
+        v_limit[i] = v_top
+        accel[i] = min(accel[i], a_top)
+        decel[i] = min(decel[i], a_top)
+
+
+@kernel
+def _corner_velocity(
+    t_end: Floats, t_start: Floats, i: int, j: int, steps: Floats, chord: float, shorter: float, span: float,
+    cycle: float,
+) -> float:  # fmt: skip
+    """The velocity limit of the junction of rows i and j.
+
+    Bend above the angle tolerance: 0.  It is the angle between the X-Y-Z directions, taken as the chord
+    2 sin(angle / 2) of the unit vectors, exact also for tiny angles; between a segment that moves X, Y, Z
+    and one that does not there is no direction to compare: 0.
+
+    Below it, no axis may jump by more than its velocity step within one cycle T, whether by one corner or by
+    many short chords.  With D = |q'_j - q'_i| of the axis and a step of size w, either of these is enough:
+
+        one corner a cycle    v D <= w   and   v T <= the shorter of both segments
+        many a cycle          v D <= w / 3   and   v² D T <= w span / 3,   span: half of both segments
+    """
+    axes = t_end.shape[1]
+    first = min(3, axes)
+    size_i = size_j = 0.0
+    for a in range(first):
+        size_i += t_end[i, a] * t_end[i, a]
+        size_j += t_start[j, a] * t_start[j, a]
+    if (size_i > 0.0) != (size_j > 0.0):
+        return 0.0
+    low = 0
+    high = first
+    if size_i == 0.0:
+        low = first
+        high = axes
+        for a in range(low, high):
+            size_i += t_end[i, a] * t_end[i, a]
+            size_j += t_start[j, a] * t_start[j, a]
+        if size_i == 0.0 or size_j == 0.0:
+            return 0.0
+    size_i = sqrt(size_i)
+    size_j = sqrt(size_j)
+    bend2 = 0.0
+    for a in range(low, high):
+        d = t_end[i, a] / size_i - t_start[j, a] / size_j
+        bend2 += d * d
+    if bend2 > chord * chord:
+        return 0.0
+    v = inf
+    for a in range(axes):
+        jump = abs(t_end[i, a] - t_start[j, a])
+        if jump > _SAME_SLOPE and steps[a] < inf:
+            alone = min(steps[a] / jump, shorter / cycle)
+            many = min(steps[a] / (3.0 * jump), sqrt(steps[a] * span / (3.0 * cycle * jump)))
+            v = min(v, max(alone, many))
+    return v
+
+
+@kernel
+def junctions(
+    kind: Kinds, length: Floats, v_limit: Floats, t_start: Floats, t_end: Floats, steps: Floats, chord: float,
+    cycle: float, v_junction: Floats,
+) -> None:  # fmt: skip
+    """Writes to v_junction (n,) what the junction after each row allows; 0 after the last row.
+
+    Positionings, jumps, dwells and M functions stop before and after; rows without length do not count: the
+    junction is between their neighbours and the rows themselves take its limit.
+    """
+    n = len(kind)
+    last = -1  # latest row that moves
+    for j in range(n):
+        v_junction[j] = 0.0
+        if kind[j] >= _SET_POSITION:
+            last = -1
+            continue
+        if length[j] <= 0.0:
+            continue
+        if last >= 0 and kind[last] != _POSITIONING and kind[j] != _POSITIONING:
+            shorter = min(float(length[last]), float(length[j]))
+            span = 0.5 * (float(length[last]) + float(length[j]))
+            v = _corner_velocity(t_end, t_start, last, j, steps, chord, shorter, span, cycle)
+            v = min(v, float(v_limit[last]), float(v_limit[j]))
+            for row in range(last, j):
+                v_junction[row] = v
+        last = j
+
+
+@kernel
+def look_ahead(
+    length: Floats, feed: Floats, v_limit: Floats, v_junction: Floats, accel: Floats, decel: Floats,
+    v_before: float, complete: int, v_end: Floats,
+) -> int:  # fmt: skip
+    """Writes the end velocities of a window and returns how many leading rows no later row can change.
+
+        backward   v_end[j] <= min(cap[j], sqrt(v_end[j+1]² + 2 d L)) with d, L of row j+1: it can be braked
+        forward    v_end[j] <= sqrt(v_end[j-1]² + 2 a L) with a, L of row j: it can be reached
+
+    cap[j] is the junction's limit and the lower of both commanded velocities min(feed, v_limit).  The path
+    after the window is unknown, so its last row ends at 0; from the last row whose cap, not the braking,
+    decides, nothing before depends on what follows.  v_before: velocity before row 0.
+    """
+    n = len(length)
+    settled = n if complete == 1 else 0
+    after = 0.0
+    for j in range(n - 1, -1, -1):
+        cap = 0.0
+        brake = 0.0
+        if j + 1 < n:
+            cap = min(v_junction[j], feed[j], v_limit[j], feed[j + 1], v_limit[j + 1])
+            brake = sqrt(after * after + 2.0 * decel[j + 1] * length[j + 1]) if length[j + 1] > 0.0 else after
+            if cap <= brake and settled == 0:
+                settled = j + 1
+        after = min(cap, brake)
+        v_end[j] = after
+    v = v_before
+    for j in range(n):
+        if length[j] > 0.0:
+            v = min(v_end[j], sqrt(v * v + 2.0 * accel[j] * length[j]))
+        else:
+            v = min(v_end[j], v)
+        v_end[j] = v
+    return settled
+
+
+@kernel
+def durations(
+    kind: Kinds, length: Floats, feed: Floats, v_limit: Floats, v_end: Floats, accel: Floats, decel: Floats,
+    v_before: float, out: Floats,
+) -> None:  # fmt: skip
+    """Writes the time [s] of every row at override 1; 0 for rows without length (a dwell's is in its event)."""
+    v = v_before
+    for j in range(len(kind)):
+        out[j] = 0.0
+        if length[j] > 0.0 and kind[j] < _SET_POSITION:
+            top = min(feed[j], v_limit[j])
+            t1, t2, t3, _, v = law_times(length[j], v, top, v_end[j], accel[j], decel[j])
+            out[j] = t1 + t2 + t3
+        else:
+            v = float(v_end[j])

@@ -1,0 +1,129 @@
+"""check-velocities: the end velocity of every segment (SMC_CheckVelocities, SoftMotion §3.2 and §6.2.7).
+
+    in    decoded chunks: feed, accel, decel as programmed, 0 where they were not
+    out   planned chunks: feed, accel, decel in force, v_limit, v_junction, v_end
+
+Rules, in this order; each can only lower what the ones before allow:
+
+    1. junction = 0 next to positionings, stops, and where the path bends by more than the angle tolerance;
+       otherwise the lower commanded velocity of both segments (the manual's rule)
+    2. the machine: axis velocity, acceleration also on curves, and the velocity step at a junction
+    3. look-ahead: no velocity that cannot be braked (deceleration) or reached (acceleration) in time
+
+Look-ahead runs on a window and passes on only rows that no later row can change, so the result is that of
+an infinite window and does not depend on the chunk size.
+
+         |<------------- window ------------->|
+    v    |      ____      cap                 |
+         |  ___/    \\__________               |
+         |_/           settled | \\            |   the rest is braking to 0: unknown rows follow
+         +---------------------+--\\-----------+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from math import sin
+
+import numpy as np
+
+from nccompile.kernels import plan as kernels
+from nccompile.kernels.timelaw import peak_factor
+from nccompile.passes.velocity.settings import PlanSettings
+from nccompile.toolpath.columns import EventKind, Floats, Kind, Toolpath
+
+__all__ = ["WINDOW", "Planner", "plan", "row_times"]
+
+WINDOW = 30_000
+"""Rows the window may hold unsettled (as many blocks as INTERP looks ahead, §1.7); a longer braking distance
+is cut there: the velocity is lower than it could be, never higher."""
+
+
+def plan(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpath]:
+    """Plans the velocities of a path; the chunks that come out are cut where rows settle."""
+    planner = Planner(settings)
+    for chunk in chunks:
+        yield from planner.feed(chunk)
+    yield from planner.finish()
+
+
+@dataclass
+class Planner:
+    """The window of `plan` for callers who push chunks themselves."""
+
+    settings: PlanSettings
+    window: int = WINDOW
+    _pending: Toolpath | None = field(default=None, init=False)
+    _v_before: float = field(default=0.0, init=False)
+
+    def feed(self, chunk: Toolpath) -> Iterator[Toolpath]:
+        """Takes the next chunk; yields what it settles."""
+        if len(chunk):
+            self._pending = chunk if self._pending is None else Toolpath.join([self._pending, chunk])
+            yield from self._settle(complete=False)
+
+    def finish(self) -> Iterator[Toolpath]:
+        """The rest of the path, which ends at rest."""
+        if self._pending is not None:
+            yield from self._settle(complete=True)
+
+    def _settle(self, *, complete: bool) -> Iterator[Toolpath]:
+        assert self._pending is not None
+        planned, settled = plan_window(self._pending, self.settings, self._v_before, complete=complete)
+        if not complete and settled == 0 and len(planned) > self.window:
+            settled = len(planned) - self.window // 2
+        if settled == 0:
+            return
+        done = planned.rows(0, settled)
+        assert done.v_end is not None
+        self._v_before = float(done.v_end[-1])
+        self._pending = self._pending.rows(settled, len(planned)) if settled < len(planned) else None
+        yield done
+
+
+def plan_window(
+    window: Toolpath, settings: PlanSettings, v_before: float, *, complete: bool
+) -> tuple[Toolpath, int]:
+    """A window with its velocities planned, and how many of its leading rows are settled."""
+    n = len(window)
+    feed = np.where(window.feed > 0.0, window.feed, settings.feed)
+    accel = np.where(window.accel > 0.0, window.accel, settings.accel)
+    decel = np.where(window.decel > 0.0, window.decel, settings.decel)
+    v_limit, v_junction, v_end = np.empty(n), np.empty(n), np.empty(n)
+    t_start, t_end = np.empty_like(window.target), np.empty_like(window.target)
+    axis = settings.limits
+    kernels.row_limits(
+        window.kind, window.starts(), window.target, window.curve, window.curves.plane,
+        window.curves.parameters, window.length, window.profile, axis.velocity, axis.acceleration, axis.rapid,
+        peak_factor(settings.law), feed, accel, decel, v_limit, t_start, t_end,
+    )  # fmt: skip
+    v_limit = np.where(np.isfinite(v_limit), v_limit, feed)
+    chord = 2.0 * sin(0.5 * settings.angle_tolerance)
+    kernels.junctions(
+        window.kind, window.length, v_limit, t_start, t_end, axis.velocity_step, chord, settings.cycle, v_junction
+    )
+    settled = kernels.look_ahead(
+        window.length, feed, v_limit, v_junction, accel, decel, v_before, int(complete), v_end
+    )
+    planned = window.replace(
+        feed=feed, accel=accel, decel=decel, v_limit=v_limit, v_junction=v_junction, v_end=v_end
+    )
+    return planned, settled
+
+
+def row_times(chunk: Toolpath, v_before: float) -> Floats:
+    """Shape (n,): the time of every segment at override 1 [s]; M functions count 0, dwells their seconds.
+
+    v_before: velocity at the start of the chunk [mm/s], the end velocity of the chunk before it.
+    """
+    assert chunk.v_limit is not None
+    assert chunk.v_end is not None
+    out = np.empty(len(chunk))
+    kernels.durations(
+        chunk.kind, chunk.length, chunk.feed, chunk.v_limit, chunk.v_end, chunk.accel, chunk.decel, v_before, out
+    )
+    e = chunk.events
+    dwell = (e.kind == EventKind.DWELL) & (chunk.kind[e.segment] == Kind.DWELL)
+    out[e.segment[dwell]] = e.k[dwell]
+    return out
