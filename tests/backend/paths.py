@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from math import pi
 
 import numpy as np
@@ -60,21 +61,8 @@ def small() -> Toolpath:
 
 def same(one: Toolpath, other: Toolpath) -> bool:
     """Whether two chunks agree in every column, to the bit."""
-    plain = [
-        "start",
-        "kind",
-        "target",
-        "curve",
-        "length",
-        "feed",
-        "accel",
-        "decel",
-        "mark",
-        "radius",
-        "profile",
-        "line",
-    ]
-    pairs = [(getattr(one, n), getattr(other, n)) for n in plain]
+    plain = {f.name for f in fields(Toolpath)} - {"axes", "curves", "events", "first", "names"}
+    pairs = [(getattr(one, n), getattr(other, n)) for n in sorted(plain)]
     pairs += [(getattr(one.curves, n), getattr(other.curves, n)) for n in ("plane", "parameters")]
     events = ("segment", "kind", "number", "position", "k", "l", "o")
     pairs += [(getattr(one.events, n), getattr(other.events, n)) for n in events]
