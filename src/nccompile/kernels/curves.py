@@ -33,8 +33,8 @@ from nccompile.kernels.curve_points import (
 
 __all__ = [
     "ARC", "ELLIPSE", "NODES", "POLYNOMIAL", "Floats", "curvature", "derivative", "derivative3",
-    "in_plane_length", "in_plane_lengths", "max_curvature", "parameter", "point", "point3", "second", "second3",
-    "speed", "tabulate", "tangent", "tangent3",
+    "in_plane_length", "in_plane_lengths", "max_curvature", "parameter", "point", "point3", "second",
+    "second3", "speed", "tabulate", "tangent", "tangent3",
 ]  # fmt: skip
 
 NODES = 129
@@ -49,19 +49,11 @@ _STEPS = 64  # bisection alone would end in 53
 
 # Gauss-Legendre quadrature of 10 points on -1..1 (Abramowitz and Stegun, table 25.4), positive half.
 _ABSCISSAE = (
-    0.14887433898163122,
-    0.4333953941292472,
-    0.6794095682990244,
-    0.8650633666889845,
-    0.9739065285171717,
-)
+    0.14887433898163122, 0.4333953941292472, 0.6794095682990244, 0.8650633666889845, 0.9739065285171717,
+)  # fmt: skip
 _WEIGHTS = (
-    0.2955242247147528,
-    0.2692667193099965,
-    0.219086362515982,
-    0.1494513491505804,
-    0.06667134430868814,
-)
+    0.2955242247147528, 0.2692667193099965, 0.219086362515982, 0.1494513491505804, 0.06667134430868814,
+)  # fmt: skip
 
 
 @kernel
@@ -233,8 +225,8 @@ def tabulate(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats) -> int:
     """Fills the arc-length table of a curve and returns the number of its rows, 2..NODES.
 
     nodes_u, nodes_s: Shape (NODES,); ascending, (0, 0) first, (1, length) last; the length [mm] is that in
-    the plane (in space for a polynomial) to 1e-13 relative.  The unused end of both arrays is scratch: it holds
-    the stack of intervals still to be taken up.
+    the plane (in space for a polynomial) to 1e-13 relative.  The unused end of both arrays is scratch: it
+    holds the stack of intervals still to be taken up.
     """
     nodes_u[0] = 0.0
     nodes_s[0] = 0.0

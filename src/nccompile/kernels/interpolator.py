@@ -20,10 +20,10 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
-from nccompile.kernels.curves import parameter, point, point3, tabulate
+from nccompile.kernels.curves import derivative, derivative3, parameter, point, point3, tabulate
 from nccompile.kernels.timelaw import law_distance, law_times, law_velocity
 
-__all__ = ["Inputs", "Rows", "advance", "limit_ends", "locate", "state_f", "state_i"]
+__all__ = ["Inputs", "Rows", "advance", "direction", "limit_ends", "locate", "state_f", "state_i"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -209,6 +209,47 @@ def locate(
     else:
         out[plane // 2] = cu
         out[plane // 2 + 1] = cv
+
+
+@kernel
+def direction(
+    rows: Rows, row: int, s: float, nodes_u: Floats, nodes_s: Floats, count: int, out: Floats
+) -> None:
+    """Writes the unit direction of the path in X, Y, Z at path length `s` of a row to `out` (3,)."""
+    length = rows.length[row]
+    w = min(s / length, 1.0) if length > 0.0 else 1.0
+    bits = rows.profile[row]
+    for a in range(3):
+        slope = rows.target[row, a] - rows.start[row, a]
+        if (bits >> a) & 1:
+            slope *= 30.0 * w * w * (1.0 - w) * (1.0 - w)
+        out[a] = slope
+    curve = rows.curve[row]
+    if curve >= 0:
+        p = rows.parameters[curve]
+        kind = rows.kind[row]
+        plane = rows.plane[curve]
+        if kind == ARC:
+            in_plane = p[2] * abs(p[4])
+            u = w
+        else:
+            in_plane = nodes_s[count - 1]
+            u = parameter(kind, p, nodes_u, nodes_s, count, w * in_plane)
+        if plane == SPACE:
+            out[0], out[1], out[2] = derivative3(kind, p, u)
+        else:
+            du, dv = derivative(kind, p, u)
+            size = sqrt(du * du + dv * dv)
+            scale = in_plane / size if size > 0.0 else 0.0
+            if plane == 1:
+                out[2] = du * scale
+                out[0] = dv * scale
+            else:
+                out[plane // 2] = du * scale
+                out[plane // 2 + 1] = dv * scale
+    size = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
+    for a in range(3):
+        out[a] = out[a] / size if size > 0.0 else 0.0
 
 
 @kernel
