@@ -17,8 +17,8 @@ PAGES: tuple[Page, ...] = (
         "NC402",
         "an axis leaves its travel",
         "Axis position (path coordinate plus the offset of [kinematics]) goes below `min` or above `max` of "
-        "the axis. The whole course of arcs, ellipses and splines counts, not only their ends: an arc can bulge "
-        "out of the travel between two allowed points. Move the workpiece by [kinematics] offset, or correct "
-        "the block. Each time an axis leaves its travel one finding is given, at the segment where it leaves.",
+        "the axis. The whole course of arcs, ellipses and splines counts, not only their ends: an arc can "
+        "bulge out of the travel between two allowed points. Move the workpiece by [kinematics] offset, or "
+        "correct the block. Each time an axis leaves its travel one finding is given, where it leaves.",
     ),
 )
