@@ -1,11 +1,11 @@
 """The exception tree: wrong calls, files and configuration.  The user's program gets Diagnostics instead.
 
-    NccompileError
-    +-- UsageError            a wrong option or argument (exit code 2)
-    +-- MachineError          a machine file that does not hold together (exit code 2)
-    +-- QueueError            a file that is not a sound OutQueue (exit code 2)
-    +-- RuntimeFault          the cyclic task or a drive had to stop (exit code 1)
-    +-- InvalidToolpath       our own bug: an invariant of the toolpath does not hold (exit code 3)
+NccompileError
++-- UsageError            a wrong option or argument (exit code 2)
++-- MachineError          a machine file that does not hold together (exit code 2)
++-- QueueError            a file that is not a sound OutQueue (exit code 2)
++-- RuntimeFault          the cyclic task or a drive had to stop (exit code 1)
++-- InvalidToolpath       our own bug: an invariant of the toolpath does not hold (exit code 3)
 """
 
 __all__ = ["InvalidToolpath", "MachineError", "NccompileError", "QueueError", "RuntimeFault", "UsageError"]

@@ -67,9 +67,12 @@ def sample(chunks: Iterable[Toolpath], cycle: float, law: int = TRAPEZOID) -> It
         )
         head += burst.dropped
         if len(burst):
-            t = np.arange(cycles, cycles + len(burst)) * cycle
+            t = np.arange(cycles, cycles + len(burst), dtype=np.float64) * cycle
             cycles += len(burst)
-            yield SampleBlock(t, *(column.copy() for column in burst[:6]))
+            yield SampleBlock(
+                t, burst.position.copy(), burst.velocity.copy(), burst.line.copy(), burst.status.copy(),
+                burst.switches.copy(), burst.log.copy(),
+            )  # fmt: skip
         if burst.reason == k.FINISHED:
             return
         if burst.reason == k.NEED_DATA:

@@ -13,8 +13,6 @@ from nccompile.codes.page import Page
 __all__ = ["PAGES", "Page"]
 
 PAGES: dict[str, Page] = {
-    page.code: page
-    for stage in (syntax, words, geometry, limits, dynamics, runtime)
-    for page in stage.PAGES
+    page.code: page for stage in (syntax, words, geometry, limits, dynamics, runtime) for page in stage.PAGES
 }
 """All pages by code, in the order of the codes."""

@@ -41,6 +41,7 @@ class Kernel(Generic[P, R]):
         functools.update_wrapper(self, function)
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Runs the function the way the switch says."""
         if _state["compiled"]:
             return self.dispatcher(*args, **kwargs)  # type: ignore[no-any-return]
         return self.py_func(*args, **kwargs)

@@ -3,9 +3,10 @@
     advance(rows, inputs, f, i, ..., out)     runs up to n cycles, returns how many and why it stopped
 
 State is two small arrays, so a snapshot is a copy.  `f` holds the law of the running segment (times from
-`law_times`, start offset S0, the end velocity WANTED), `i` the row, the event pointer and the flags.  A cycle spends its
-time along the rows: it may finish several short ones; it ends early only where the set position has to be seen
-by the outside: a jump (G92), an M function, the end, a wait.  The first cycle puts out the start position.
+`law_times`, start offset S0, the end velocity WANTED), `i` the row, the event pointer and the flags.  A cycle
+spends its time along the rows: it may finish several short ones; it ends early only where the set position
+has to be seen by the outside: a jump (G92), an M function, the end, a wait.  The first cycle puts
+out the start position.
 
 Whoever calls with the same rows, inputs and cycle time gets the same bits, whatever the number of cycles a
 call: the offline sampler and the cyclic task differ only in who supplies rows.
@@ -162,9 +163,7 @@ def limit_ends(rows: Rows, head: int, tail: int, complete: int, override: float)
 
 
 @kernel
-def locate(
-    rows: Rows, row: int, s: float, nodes_u: Floats, nodes_s: Floats, count: int, out: Floats
-) -> None:
+def locate(rows: Rows, row: int, s: float, nodes_u: Floats, nodes_s: Floats, count: int, out: Floats) -> None:
     """Writes the position at path length `s` of a row to `out` (k,); the row's very end is its target.
 
     X-Y (the curve's plane) run on the curve, all other axes linearly in path length, or where the S-profile

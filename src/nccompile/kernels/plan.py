@@ -78,7 +78,9 @@ def row_limits(
                 continue
             size = abs(slope)
             if (bits >> a) & 1:
-                v_top = min(v_top, v_axis[a] / (size * _S_SLOPE), sqrt(0.5 * a_axis[a] * run / (size * _S_BEND)))
+                v_top = min(
+                    v_top, v_axis[a] / (size * _S_SLOPE), sqrt(0.5 * a_axis[a] * run / (size * _S_BEND))
+                )
                 a_top = min(a_top, 0.5 * a_axis[a] / (size * _S_SLOPE * peak))
                 rapid_top = min(rapid_top, rapid[a] / (size * _S_SLOPE))
             else:

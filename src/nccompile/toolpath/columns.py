@@ -64,7 +64,9 @@ class Kind(IntEnum):
     POSITIONING = 0  # G0: straight, at rapid, stops at both ends
     LINE = 1  # G1
     ARC = 2  # G2 G3: curve row centre_u, centre_v, radius, start angle [rad], sweep [rad, + is ccw]
-    ELLIPSE = 3  # G8 G9: centre_u, centre_v, main half-axis, sub half-axis, direction [rad], start, sweep [rad]
+    ELLIPSE = (
+        3  # G8 G9: centre_u, centre_v, main half-axis, sub half-axis, direction [rad], start, sweep [rad]
+    )
     POLYNOMIAL = 4  # G5 G6: cubics c0 + c1 t + c2 t² + c3 t³, t in 0..1: four coefficients each for x, y, z
     SET_POSITION = 5  # G92: a jump, takes no time
     DWELL = 6  # G4: waits, event row has the seconds

@@ -1,7 +1,7 @@
 """Velocity planning: limits, junctions and look-ahead; the last pass before the queue.
 
-    settings    what the planner needs to know of machine, program defaults and options
-    planner     the pass itself: a window over the chunks
+settings    what the planner needs to know of machine, program defaults and options
+planner     the pass itself: a window over the chunks
 """
 
 from nccompile.passes.velocity.planner import WINDOW, Planner, plan, row_times

@@ -101,7 +101,15 @@ def plan_window(
     v_limit = np.where(np.isfinite(v_limit), v_limit, feed)
     chord = 2.0 * sin(0.5 * settings.angle_tolerance)
     kernels.junctions(
-        window.kind, window.length, v_limit, t_start, t_end, axis.velocity_step, chord, settings.cycle, v_junction
+        window.kind,
+        window.length,
+        v_limit,
+        t_start,
+        t_end,
+        axis.velocity_step,
+        chord,
+        settings.cycle,
+        v_junction,
     )
     settled = kernels.look_ahead(
         window.length, feed, v_limit, v_junction, accel, decel, v_before, int(complete), v_end
@@ -121,7 +129,15 @@ def row_times(chunk: Toolpath, v_before: float) -> Floats:
     assert chunk.v_end is not None
     out = np.empty(len(chunk))
     kernels.durations(
-        chunk.kind, chunk.length, chunk.feed, chunk.v_limit, chunk.v_end, chunk.accel, chunk.decel, v_before, out
+        chunk.kind,
+        chunk.length,
+        chunk.feed,
+        chunk.v_limit,
+        chunk.v_end,
+        chunk.accel,
+        chunk.decel,
+        v_before,
+        out,
     )
     e = chunk.events
     dwell = (e.kind == EventKind.DWELL) & (chunk.kind[e.segment] == Kind.DWELL)
