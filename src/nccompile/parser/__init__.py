@@ -1,1 +1,187 @@
-"""Package."""
+"""Part-program text to syntax tree; no meaning.
+
+`parse` reads block by block: a line that is no block gives one diagnostic, and the rest is still read.  The
+text is never read as a whole by Lark, so a later fast scanner can take the lines it knows in front of it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from lark.exceptions import UnexpectedInput, UnexpectedToken
+
+from nccompile.diagnostics import Diagnostics, Severity
+from nccompile.parser.faults import Fault, explain
+from nccompile.parser.grammar import line_parser
+from nccompile.parser.tree import Block, Comment, Header, Value, Variable, Word
+from nccompile.source import Source, Span
+
+__all__ = ["MAX_LINE", "Block", "Comment", "Header", "Value", "Variable", "Word", "parse", "read_header"]
+
+MAX_LINE = 65_536
+"""Longest line that is read, in characters; no program that a person or a post-processor wrote has one."""
+
+_CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
+_NUMBER_FIRST = re.compile(r"[ \t/]*([Nn])([0-9]+)(?![0-9.])")
+
+
+def parse(source: Source, diagnostics: Diagnostics) -> Iterator[Block]:
+    """The blocks of a program in order; lines without words, number and comment are left out.
+
+    Every line that is no block adds one error and comes as a block that is not `sound`.  The header is not a
+    block (see `read_header`).  Time is linear in the text, memory that of one block.
+    """
+    if _is_binary(source, diagnostics):
+        return
+    reader = _Reader(source, diagnostics)
+    any_block = False
+    for line, text in enumerate(source.lines, 1):
+        node = reader.read(line, text)
+        if node is None:
+            continue
+        if isinstance(node, Header):
+            if not reader.header(node, any_block):
+                return
+        elif node.words or node.number or node.comments or not node.sound:
+            if not any_block and (node.words or node.number):
+                reader.started(node)
+            any_block = any_block or bool(node.words or node.number or not node.sound)
+            yield node
+    if not any_block:
+        diagnostics.report(
+            "NC012", Severity.ERROR, "there is no program in this file: it has no block", source, Span(1, 1, 1),
+            "a program is a line with % and its name, then blocks such as N10 G1 X10 F20",
+        )  # fmt: skip
+
+
+def read_header(source: Source) -> Header | None:
+    """The header line of a program; None if a block or anything else comes first."""
+    parser = line_parser()
+    for line, text in enumerate(source.lines, 1):
+        bare = text.strip()
+        if not bare or (bare.startswith("(") and bare.endswith(")")):
+            continue
+        if not bare.startswith("%") or len(text) > MAX_LINE:
+            return None
+        try:
+            node = parser.parse(text)
+        except UnexpectedInput:
+            return None
+        return node._replace(line=line) if isinstance(node, Header) else None
+    return None
+
+
+class _Reader:
+    """Reads single lines and reports what is wrong with them."""
+
+    def __init__(self, source: Source, diagnostics: Diagnostics) -> None:
+        self.source = source
+        self.diagnostics = diagnostics
+        self.parse = line_parser().parse
+        self.seen_header = False
+
+    def read(self, line: int, text: str) -> Block | Header | None:
+        """The node of one line; None for an empty one."""
+        if len(text) > MAX_LINE:
+            self.report(line, Fault(
+                "NC011", f"the line has {len(text):,} characters, more than {MAX_LINE:,}", 0, MAX_LINE,
+                "put every block on a line of its own",
+            ))  # fmt: skip
+            return Block(line, 1, MAX_LINE, None, (), sound=False)
+        text = text.removesuffix("\x1a")  # the end-of-file mark of old systems
+        if not text or text.isspace():
+            return None
+        try:
+            node: Block | Header = self.parse(text)  # type: ignore[assignment]  # the transformer's result
+        except UnexpectedInput as stop:
+            at = stop.token.start_pos if isinstance(stop, UnexpectedToken) else stop.pos_in_stream
+            at = (
+                len(text)
+                if at is None or (isinstance(stop, UnexpectedToken) and stop.token.type == "$END")
+                else at
+            )
+            self.report(line, explain(text, at))
+            return _unsound(line, text)
+        return _placed(node, line)
+
+    def report(self, line: int, fault: Fault) -> None:
+        """Adds an error."""
+        span = Span(line, fault.begin + 1, fault.end + 1)
+        self.diagnostics.report(fault.code, Severity.ERROR, fault.message, self.source, span, fault.help)
+
+    def started(self, block: Block) -> None:
+        """Called at the first block: warns if the header is missing."""
+        if not self.seen_header:
+            self.diagnostics.report(
+                "NC009", Severity.WARNING, "the program does not start with %", self.source, block.span,
+                "put a line with % and the program's name before the first block",
+            )  # fmt: skip
+            self.seen_header = True
+
+    def header(self, header: Header, after_blocks: bool) -> bool:
+        """Whether reading goes on after a header line."""
+        if not self.seen_header and not after_blocks:
+            self.seen_header = True
+            return True
+        rest = self.source.lines[header.line :]
+        if any(line.strip() for line in rest):
+            self.report(header.line, Fault(
+                "NC008", "a second program starts here", header.column - 1, header.end - 1,
+                "keep one program a file; what follows is not read",
+            ))  # fmt: skip
+        else:
+            self.diagnostics.report(
+                "NC008", Severity.WARNING, "% has no meaning at the end of a program", self.source, header.span,
+                "remove the line",
+            )  # fmt: skip
+        return False
+
+
+def _is_binary(source: Source, diagnostics: Diagnostics) -> bool:
+    """Whether the text holds control characters no program has; reports the first."""
+    found = _CONTROL.search(
+        source.text.rstrip("\x1a\x00 \r\n") if source.text.endswith("\x1a") else source.text
+    )
+    if found is None:
+        return False
+    before = source.text[: found.start()].replace("\r\n", "\n").replace("\r", "\n")
+    line = before.count("\n") + 1
+    column = len(before) - before.rfind("\n")
+    character = ord(found.group())
+    wide = source.text[:2] in {"\xff\xfe", "\xfe\xff"}
+    diagnostics.report(
+        "NC010", Severity.ERROR,
+        f"this is not a text file: it holds the control character U+{character:04X}",
+        source, Span(line, column, column + 1),
+        "save the program as UTF-8" if wide else "",
+    )  # fmt: skip
+    return True
+
+
+def _placed(node: Block | Header, line: int) -> Block | Header:
+    """The node with its line number in every part."""
+    if line == 1 or isinstance(node, Header):
+        return node._replace(line=line)
+    number = node.number
+    return Block(
+        line,
+        node.column,
+        node.end,
+        None if number is None else number._replace(line=line),
+        tuple([Word(w[0], w[1], w[2], line, w[4]) for w in node.words]),
+        node.skip,
+        tuple([c._replace(line=line) for c in node.comments]) if node.comments else (),
+    )
+
+
+def _unsound(line: int, text: str) -> Block:
+    """The block of a line that could not be read, with its number so that jumps to it are not blamed too."""
+    first = len(text) - len(text.lstrip())
+    found = _NUMBER_FIRST.match(text)
+    number = None
+    if found is not None:
+        number = Word("N", float(found[2]), found[1] + found[2], line, found.start(1) + 1)
+    return Block(
+        line, first + 1, len(text.rstrip()) + 1, number, (), text.lstrip().startswith("/"), sound=False
+    )
