@@ -27,13 +27,13 @@ from nccompile.backend.files import replacing
 from nccompile.backend.ncq_check import check_chunk
 from nccompile.backend.ncq_layout import META, Counts, Member, columns, counts, member_bytes, members
 from nccompile.backend.ncq_meta import Meta, Provenance
+from nccompile.backend.npz import npz_entry
 from nccompile.backend.totals import Totals, TotalsGatherer
 from nccompile.errors import QueueError
 from nccompile.toolpath import Curves, Events, Floats, Toolpath
 
 __all__ = ["Meta", "Provenance", "Queue", "Totals", "read", "write"]
 
-_OLDEST = (1980, 1, 1, 0, 0, 0)
 _GREATEST_META = 1 << 26
 _ZIP_ERRORS = (
     zipfile.BadZipFile, zlib.error, struct_error, NotImplementedError, RuntimeError, EOFError, ValueError,
@@ -82,21 +82,13 @@ def _write_zip(
             names = max(names, chunk.names, key=len)
             gatherer.add(chunk)
             for member, column in zip(members(number, table[-1], len(axes)), columns(chunk), strict=True):
-                archive.writestr(_entry(member.name), member_bytes(member, column))
+                archive.writestr(npz_entry(member.name), member_bytes(member, column))
         if not table:
             gatherer.add(Toolpath.empty())
         totals = gatherer.totals(job_time())
         meta = Meta(axes, tuple(start.tolist()), provenance, totals, names, tuple(table))
-        archive.writestr(_entry(META), meta.to_json())
+        archive.writestr(npz_entry(META), meta.to_json())
     return meta
-
-
-def _entry(name: str) -> zipfile.ZipInfo:
-    """A zip entry whose bytes depend on nothing but its name."""
-    entry = zipfile.ZipInfo(name, _OLDEST)
-    entry.create_system = 3
-    entry.external_attr = 0o100644 << 16
-    return entry
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,13 @@ reads the member; nothing in the file is unpickled, inflated or trusted to state
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from nccompile.backend.npz import npy_header
 from nccompile.toolpath import CURVE_PARAMETERS, Toolpath
 
 __all__ = ["META", "Counts", "Member", "columns", "counts", "folder", "member_bytes", "members"]
@@ -116,11 +116,4 @@ def member_bytes(member: Member, array: npt.NDArray[Any]) -> bytes:
 
 
 def _member(name: str, dtype: str, shape: tuple[int, ...]) -> Member:
-    return Member(name, dtype, shape, _npy_header(dtype, shape))
-
-
-def _npy_header(dtype: str, shape: tuple[int, ...]) -> bytes:
-    """The header of NumPy's file format 1.0, written here so that the bytes hang on no NumPy version."""
-    text = f"{{'descr': '{dtype}', 'fortran_order': False, 'shape': {shape}, }}"
-    fill = -(10 + len(text) + 1) % 64
-    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text) + fill + 1) + f"{text}{' ' * fill}\n".encode()
+    return Member(name, dtype, shape, npy_header(dtype, shape))

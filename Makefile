@@ -1,0 +1,50 @@
+# make demo    from nothing but Python 3.11: environment, install, compile, run, plot
+# make test    the tests
+# make check   format, lint, types, layering and the tests
+# make bench   the benchmarks
+# make accept  rewrites the golden files; read the difference before committing it
+
+PYTHON ?= $(shell command -v python3.11 || command -v python3 || echo python)
+VENV ?= .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+INPUTS := pyproject.toml README.md
+
+.PHONY: demo test check lint bench accept clean
+.DELETE_ON_ERROR:
+
+demo: $(VENV)/.installed
+	@sh samples/demo.sh $(BIN)/nccompile demo-out
+
+test: $(VENV)/.installed-dev
+	$(BIN)/python -m pytest
+
+check: lint test
+
+lint: $(VENV)/.installed-dev
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/.installed-dev
+	$(BIN)/python -m benchmarks
+
+accept: $(VENV)/.installed-dev
+	NCCOMPILE_ACCEPT=1 $(BIN)/python -m pytest tests/golden
+	git status --short tests/golden
+
+clean:
+	rm -rf $(VENV) build demo-out .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+
+$(VENV)/bin/python:
+	$(PYTHON) -m venv $(VENV)
+
+# An editable install: sources may change without installing again, only pyproject.toml asks for it.
+$(VENV)/.installed: $(INPUTS) | $(VENV)/bin/python
+	$(PIP) install -e .
+	@touch $@
+
+$(VENV)/.installed-dev: $(INPUTS) | $(VENV)/bin/python
+	$(PIP) install -e '.[dev]'
+	@touch $@ $(VENV)/.installed

@@ -1,0 +1,56 @@
+% rose
+(Pen drawing for plotter2: a star of rays, a rose of arcs and a frame. The pen is down at Z0, up at Z5.)
+(H1 is the pen blower: on a quarter of the way into the frame, off 5 mm before its end.)
+N10 G0 Z5
+
+(Rose: six petals of two arcs each.)
+N100 G0 X0 Y0
+N110 G1 Z0 F40
+N120 G2 X60 Y0 R40 F150
+N130 G2 X0 Y0 R40
+N140 G2 X30 Y51.961524 R40
+N150 G2 X0 Y0 R40
+N160 G2 X-30 Y51.961524 R40
+N170 G2 X0 Y0 R40
+N180 G2 X-60 Y0 R40
+N190 G2 X0 Y0 R40
+N200 G2 X-30 Y-51.961524 R40
+N210 G2 X0 Y0 R40
+N220 G2 X30 Y-51.961524 R40
+N230 G2 X0 Y0 R40
+N240 G1 Z5 F40
+
+(Two rings around it.)
+N300 G0 X62 Y0
+N310 G1 Z0
+N320 G3 X62 Y0 I-62 J0 F150
+N330 G1 X70 Y0
+N340 G3 X70 Y0 I-70 J0
+N350 G1 Z5 F40
+
+(Rays, drawn by a loop in relative coordinates.)
+N400 G0 X-110 Y80
+N410 G36 D12
+N420 G91
+N430 G1 Z-5 F40
+N440 G1 X10 Y-5 F150
+N450 G1 X10 Y5
+N460 G1 Z5 F40
+N470 G0 X-2
+N480 G37 D-1
+N490 G20 L430
+N500 G90
+
+(Frame with rounded corners.)
+N600 G0 X-130 Y-85
+N610 G1 Z0 F40
+N620 G1 X-130 Y85 F200 H1 O0.25
+N630 G2 X-120 Y95 R10
+N640 G1 X120 Y95
+N650 G2 X130 Y85 R10
+N660 G1 X130 Y-85
+N670 G2 X120 Y-95 R10
+N680 G1 X-120 Y-95 H-1 L-5
+N690 G2 X-130 Y-85 R10
+N700 G1 Z5 F40
+N710 G0 X-200 Y-140
