@@ -28,12 +28,13 @@ and no program states a picometre.  Decides between a full circle and an arc of 
 PARALLEL = 1e-9
 """Sine of the angle below which two directions are parallel: a parabola's tangents that flat meet nowhere."""
 
-MEETING = 1e-9
-"""[mm] A curve's ends may miss the chain's positions by this much: the set positions promise 1e-9 mm."""
+MEETING = 2e-9
+"""[mm] A curve's ends may miss the chain's positions by this much: the end of a full circle is the start to
+COINCIDENT, and the rest is for rounding.  The interpolator puts out the chain's position at the very end."""
 
-MEETING_RATIO = 1e-12
+MEETING_RATIO = 1e-14
 """The same as a part of the largest number in the curve row: a radius of 1e6 mm has digits of 1e-10 mm, and
-its end is a sum of some of them."""
+an end point is computed from some tens of them."""
 
 LENGTH_RATIO = 1e-12
 """A stored length may differ from the geometry's by this part of itself."""
