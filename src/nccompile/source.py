@@ -6,6 +6,7 @@ file:line:column and the text of the line.  Lines and columns count from 1, colu
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -32,10 +33,11 @@ NOWHERE = Span(0, 0, 0)
 
 @dataclass(frozen=True)
 class Source:
-    """A program text with the name it is reported under."""
+    """A program text with the name it is reported under; `sha256` of its bytes, empty if it never had any."""
 
     name: str
     text: str = field(repr=False)
+    sha256: str = field(default="", repr=False, compare=False)
 
     @classmethod
     def from_bytes(cls, name: str, data: bytes) -> Source:
@@ -44,7 +46,7 @@ class Source:
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError:
             text = data.decode("latin-1")
-        return cls(name, text)
+        return cls(name, text, hashlib.sha256(data).hexdigest())
 
     @classmethod
     def read(cls, path: Path) -> Source:
