@@ -79,16 +79,18 @@ def row_limits(
             size = abs(slope)
             if (bits >> a) & 1:
                 v_top = min(
-                    v_top, v_axis[a] / (size * _S_SLOPE), sqrt(0.5 * a_axis[a] * run / (size * _S_BEND))
+                    v_top,
+                    float(v_axis[a]) / (size * _S_SLOPE),
+                    sqrt(0.5 * float(a_axis[a]) * run / (size * _S_BEND)),
                 )
-                a_top = min(a_top, 0.5 * a_axis[a] / (size * _S_SLOPE * peak))
-                rapid_top = min(rapid_top, rapid[a] / (size * _S_SLOPE))
+                a_top = min(a_top, 0.5 * float(a_axis[a]) / (size * _S_SLOPE * peak))
+                rapid_top = min(rapid_top, float(rapid[a]) / (size * _S_SLOPE))
             else:
                 t_start[i, a] = slope
                 t_end[i, a] = slope
-                v_top = min(v_top, v_axis[a] / size)
-                a_top = min(a_top, a_axis[a] / (size * peak))
-                rapid_top = min(rapid_top, rapid[a] / size)
+                v_top = min(v_top, float(v_axis[a]) / size)
+                a_top = min(a_top, float(a_axis[a]) / (size * peak))
+                rapid_top = min(rapid_top, float(rapid[a]) / size)
         if kind[i] == _POSITIONING and rapid_top < inf:
             feed[i] = min(rapid_top, v_top)
         if row >= 0:
@@ -106,8 +108,8 @@ def row_limits(
                         slopes = t_end if end else t_start
                         slopes[i, first] = share * du / size
                         slopes[i, second] = share * dv / size
-                a_plane = min(a_axis[first], a_axis[second])
-                v_plane = min(v_axis[first], v_axis[second])
+                a_plane = min(float(a_axis[first]), float(a_axis[second]))
+                v_plane = min(float(v_axis[first]), float(v_axis[second]))
             else:
                 for end in range(2):
                     dx, dy, dz = derivative3(int(kind[i]), p, float(end))
@@ -117,8 +119,8 @@ def row_limits(
                         slopes[i, 0] = dx / size
                         slopes[i, 1] = dy / size
                         slopes[i, 2] = dz / size
-                a_plane = min(a_axis[0], a_axis[1], a_axis[2])
-                v_plane = min(v_axis[0], v_axis[1], v_axis[2])
+                a_plane = min(float(a_axis[0]), float(a_axis[1]), float(a_axis[2]))
+                v_plane = min(float(v_axis[0]), float(v_axis[1]), float(v_axis[2]))
             if share > 0.0:
                 v_top = min(v_top, v_plane / share)
                 a_top = min(a_top, _TANGENTIAL * a_plane / (share * peak))
@@ -188,11 +190,12 @@ def _corner_velocity(
 def junctions(
     kind: Kinds, length: Floats, v_limit: Floats, t_start: Floats, t_end: Floats, steps: Floats, chord: float,
     cycle: float, v_junction: Floats,
-) -> None:  # fmt: skip
+) -> int:  # fmt: skip
     """Writes to v_junction (n,) what the junction after each row allows; 0 after the last row.
 
     Positionings, jumps, dwells and M functions stop before and after; rows without length do not count: the
-    junction is between their neighbours and the rows themselves take its limit.
+    junction is between their neighbours and the rows themselves take its limit.  Returns the number of leading
+    rows whose junction is known: the last row that moves waits for the next one.
     """
     n = len(kind)
     last = -1  # latest row that moves
@@ -211,12 +214,13 @@ def junctions(
             for row in range(last, j):
                 v_junction[row] = v
         last = j
+    return last if last >= 0 else n
 
 
 @kernel
 def look_ahead(
-    length: Floats, feed: Floats, v_limit: Floats, v_junction: Floats, accel: Floats, decel: Floats,
-    v_before: float, complete: int, v_end: Floats,
+    kind: Kinds, length: Floats, feed: Floats, v_limit: Floats, v_junction: Floats, accel: Floats, decel: Floats,
+    v_before: float, known: int, complete: int, v_end: Floats,
 ) -> int:  # fmt: skip
     """Writes the end velocities of a window and returns how many leading rows no later row can change.
 
@@ -225,7 +229,8 @@ def look_ahead(
 
     cap[j] is the junction's limit and the lower of both commanded velocities min(feed, v_limit).  The path
     after the window is unknown, so its last row ends at 0; from the last row whose cap, not the braking,
-    decides, nothing before depends on what follows.  v_before: velocity before row 0.
+    decides, nothing before depends on what follows.  It must be one of the `known` junctions, and not be in the
+    middle of rows without length, which share one.  v_before: velocity before row 0.
     """
     n = len(length)
     settled = n if complete == 1 else 0
@@ -236,7 +241,8 @@ def look_ahead(
         if j + 1 < n:
             cap = min(v_junction[j], feed[j], v_limit[j], feed[j + 1], v_limit[j + 1])
             brake = sqrt(after * after + 2.0 * decel[j + 1] * length[j + 1]) if length[j + 1] > 0.0 else after
-            if cap <= brake and settled == 0:
+            whole = length[j + 1] > 0.0 or kind[j + 1] >= _SET_POSITION
+            if cap <= brake and settled == 0 and j < known and whole:
                 settled = j + 1
         after = min(cap, brake)
         v_end[j] = after

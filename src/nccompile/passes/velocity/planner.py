@@ -72,7 +72,8 @@ class Planner:
         assert self._pending is not None
         planned, settled = plan_window(self._pending, self.settings, self._v_before, complete=complete)
         if not complete and settled == 0 and len(planned) > self.window:
-            settled = len(planned) - self.window // 2
+            moving = np.flatnonzero(planned.length[: len(planned) - self.window // 2 + 1] > 0.0)
+            settled = int(moving[-1]) if len(moving) else 0
         if settled == 0:
             return
         done = planned.rows(0, settled)
@@ -100,7 +101,7 @@ def plan_window(
     )  # fmt: skip
     v_limit = np.where(np.isfinite(v_limit), v_limit, feed)
     chord = 2.0 * sin(0.5 * settings.angle_tolerance)
-    kernels.junctions(
+    known = kernels.junctions(
         window.kind,
         window.length,
         v_limit,
@@ -112,7 +113,7 @@ def plan_window(
         v_junction,
     )
     settled = kernels.look_ahead(
-        window.length, feed, v_limit, v_junction, accel, decel, v_before, int(complete), v_end
+        window.kind, window.length, feed, v_limit, v_junction, accel, decel, v_before, known, int(complete), v_end
     )
     planned = window.replace(
         feed=feed, accel=accel, decel=decel, v_limit=v_limit, v_junction=v_junction, v_end=v_end
