@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nccompile.decoder.core import Core
+from nccompile.decoder.core import LIMIT, Core
 from nccompile.parser import Block
 from nccompile.source import Span
 
@@ -33,8 +33,9 @@ class Flow:
             return
         self._program = list(self._source)
         for at, block in enumerate(self._program):
-            if block.number is not None and isinstance(block.number.value, float):
-                self._numbers.setdefault(int(block.number.value), []).append(at)
+            number = block.number.value if block.number is not None else None
+            if isinstance(number, float) and number <= LIMIT:
+                self._numbers.setdefault(int(number), []).append(at)
         ran = 0
         while self._at < len(self._program):
             block = self._program[self._at]

@@ -92,11 +92,10 @@ class Motion:
         position = modal.position
         dx, dy = target[0] - position[0], target[1] - position[1]
         length = self._length(sqrt(dx * dx + dy * dy), target)
-        leaving: Curve | tuple[float, float] | None = None
-        if kind is Kind.LINE and (dx != 0.0 or dy != 0.0):
-            leaving = (dx, dy)
+        contour = kind is Kind.LINE and (dx != 0.0 or dy != 0.0)
+        leaving: Curve | tuple[float, float] | None = (dx, dy) if contour else None
         if length > 0.0 or kind is Kind.POSITIONING:
-            self.spline.close(leaving)
+            self.spline.close((dx, dy) if contour else None)
         else:
             leaving = modal.leaving  # a line without length keeps its neighbours' tangents together
         self._finish(statement, self._core.add(kind, target, length, statement.line), length)

@@ -22,6 +22,9 @@ __all__ = ["MAX_LINE", "Block", "Comment", "Header", "Value", "Variable", "Word"
 MAX_LINE = 65_536
 """Longest line that is read, in characters; no program that a person or a post-processor wrote has one."""
 
+MAX_UNREADABLE = 1000
+"""Lines without sense after which reading stops: this is no part program."""
+
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _NUMBER_FIRST = re.compile(r"[ \t/]*([Nn])([0-9]+)(?![0-9.])")
 
@@ -43,6 +46,9 @@ def parse(source: Source, diagnostics: Diagnostics) -> Iterator[Block]:
         if isinstance(node, Header):
             if not reader.header(node, any_block):
                 return
+        elif reader.unreadable >= MAX_UNREADABLE:
+            reader.give_up(node)
+            return
         elif node.words or node.number or node.comments or not node.sound:
             if not any_block and (node.words or node.number):
                 reader.started(node)
@@ -80,6 +86,7 @@ class _Reader:
         self.diagnostics = diagnostics
         self.parse = line_parser().parse
         self.seen_header = False
+        self.unreadable = 0
 
     def read(self, line: int, text: str) -> Block | Header | None:
         """The node of one line; None for an empty one."""
@@ -107,8 +114,16 @@ class _Reader:
 
     def report(self, line: int, fault: Fault) -> None:
         """Adds an error."""
+        self.unreadable += 1
         span = Span(line, fault.begin + 1, fault.end + 1)
         self.diagnostics.report(fault.code, Severity.ERROR, fault.message, self.source, span, fault.help)
+
+    def give_up(self, block: Block) -> None:
+        """Called when so many lines could not be read that the rest would not help either."""
+        self.report(block.line, Fault(
+            "NC014", f"reading stops here: {self.unreadable:,} lines are no blocks", block.column - 1, block.end - 1,
+            "is this a part program?",
+        ))  # fmt: skip
 
     def started(self, block: Block) -> None:
         """Called at the first block: warns if the header is missing."""

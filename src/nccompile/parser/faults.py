@@ -7,7 +7,9 @@ meant.
 from __future__ import annotations
 
 import re
+import string
 import unicodedata
+from collections.abc import Callable
 from typing import NamedTuple
 
 __all__ = ["Fault", "explain"]
@@ -44,24 +46,7 @@ def explain(text: str, at: int) -> Fault:
     """The fault at the 0-based place `at` of a line that the grammar refused."""
     if at >= len(text):
         return Fault("NC001", "the line ends too early", max(0, len(text) - 1), len(text))
-    character = text[at]
-    if character in "()":
-        return _comment(text, at)
-    if character == "$":
-        return _variable(text, at, at)
-    if character in "Nn":
-        return _block_number(text, at)
-    if character.isascii() and character.isalpha():
-        return _word(text, at)
-    if character in "+-." or (character.isascii() and character.isdigit()):
-        return _bare_number(text, at)
-    if character == "/":
-        return Fault(
-            "NC007", "/ stands only at the start of a block", at, at + 1, "move it before the block number"
-        )
-    if character == "%":
-        return Fault("NC008", "% stands only at the start of a program", at, at + 1)
-    return _unexpected(text, at)
+    return _BY_CHARACTER.get(text[at], _unexpected)(text, at)
 
 
 def _unexpected(text: str, at: int) -> Fault:
@@ -81,6 +66,20 @@ def _comment(text: str, at: int) -> Fault:
     if inner >= 0 and (close < 0 or inner < close):
         return Fault("NC004", "comments cannot be nested", inner, inner + 1, "use [ ] inside a comment")
     return Fault("NC004", "the comment is not closed on its line", at, len(text), "close it with )")
+
+
+def _skip(text: str, at: int) -> Fault:
+    return Fault(
+        "NC007", "/ stands only at the start of a block", at, at + 1, "move it before the block number"
+    )
+
+
+def _percent(text: str, at: int) -> Fault:
+    return Fault("NC008", "% stands only at the start of a program", at, at + 1)
+
+
+def _bare_variable(text: str, at: int) -> Fault:
+    return _variable(text, at, at)
 
 
 def _variable(text: str, begin: int, at: int) -> Fault:
@@ -170,3 +169,15 @@ def _bare_number(text: str, at: int) -> Fault:
         end,
         "put a letter before it: X" + text[at:end],
     )
+
+
+_BY_CHARACTER: dict[str, Callable[[str, int], Fault]] = {
+    **dict.fromkeys(string.ascii_letters, _word),
+    **dict.fromkeys("Nn", _block_number),
+    **dict.fromkeys("+-.0123456789", _bare_number),
+    **dict.fromkeys("()", _comment),
+    "$": _bare_variable,
+    "/": _skip,
+    "%": _percent,
+}
+"""Who explains a line that cannot be read on from a character."""
