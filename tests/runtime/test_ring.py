@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -134,7 +135,7 @@ def test_a_reader_keeps_its_rows_while_others_are_pushed() -> None:
     for line in range(5, 400):
         ring.drop(1)
         view = ring.view()
-        columns = (view.rows.line, view.rows.target, view.rows.event_begin)
+        columns: tuple[npt.NDArray[Any], ...] = (view.rows.line, view.rows.target, view.rows.event_begin)
         before = [column[view.head : view.tail].copy() for column in columns]
         ring.push(numbered(line, 1, rng))
         for column, kept in zip(columns, before, strict=True):

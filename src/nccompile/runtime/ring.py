@@ -200,8 +200,8 @@ class RingBuffer:
             for e in range(rows.event_begin[at], rows.event_end[at])
         ]
 
-    def push(self, chunk: Toolpath, begin: int = 0) -> int:
-        """Appends rows begin.. of a planned chunk, as many as fit; returns how many were taken.
+    def push(self, chunk: Toolpath, begin: int = 0, limit: int | None = None) -> int:
+        """Appends rows begin.. of a planned chunk, as many as fit, at most `limit`; returns how many.
 
         Raises: UsageError if the chunk is not planned, has other axes, or one row has more events than the
         buffer holds.
@@ -210,7 +210,8 @@ class RingBuffer:
             raise UsageError("only a planned toolpath can be pushed")
         if chunk.axes != self.axes:
             raise UsageError(f"the buffer is for axes {' '.join(self.axes)}, not {' '.join(chunk.axes)}")
-        end = begin + min(len(chunk) - begin, self.free)
+        rest = len(chunk) - begin if limit is None else min(limit, len(chunk) - begin)
+        end = begin + min(rest, self.free)
         end, event_end = self._with_events(chunk, begin, end)
         if end <= begin:
             return 0
