@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.velocity.random_paths import Builder, cut, paths
 
 from nccompile import kernels
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import PlanSettings, Planner, plan, row_times
+from nccompile.passes.velocity import Planner, PlanSettings, plan, row_times
 from nccompile.toolpath.columns import Kind, Toolpath
+from tests.velocity.random_paths import Builder, cut, paths
 
 AXES = ("X", "Y", "Z", "A")
 
