@@ -1,1 +1,1 @@
-"""Package."""
+"""The command line: one file a subcommand; `main` is the entry point."""

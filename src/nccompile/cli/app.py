@@ -1,0 +1,155 @@
+"""The subcommands and what is common to them: exit codes, errors in one line, closed pipes, Ctrl-C.
+
+0    done
+1    the program has errors, or the run stopped on a fault
+2    wrong usage: an option, a file that cannot be read or is of another kind, a machine file
+3    internal error
+130  interrupted by Ctrl-C (143: terminated)
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import traceback
+from collections.abc import Sequence
+from types import FrameType
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand
+
+from nccompile.cli.compile import compile_program
+from nccompile.cli.dump import dump
+from nccompile.cli.explain import explain
+from nccompile.cli.info import info
+from nccompile.cli.machine import check
+from nccompile.cli.plot import plot
+from nccompile.cli.run import run_program
+from nccompile.cli.sample import sample
+from nccompile.errors import NccompileError
+from nccompile.version import VERSION
+
+__all__ = ["app", "run"]
+
+INTERNAL = 3
+INTERRUPTED = 130
+TERMINATED = 143
+
+
+class Guarded(TyperCommand):
+    """A command whose failures are one line on stderr and a documented exit code, never a traceback."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Runs the command's function."""
+        try:
+            return super().invoke(ctx)
+        except NccompileError as error:
+            _say(f"error: {error}")
+            raise typer.Exit(error.exit_code) from error
+        except MemoryError as error:
+            _say("error: not enough memory")
+            raise typer.Exit(INTERNAL) from error
+        except (typer.Exit, typer.Abort, BrokenPipeError, KeyboardInterrupt):
+            raise
+        except OSError as error:
+            _say(f"error: {error.strerror or error}" + (f": {error.filename}" if error.filename else ""))
+            raise typer.Exit(2) from error
+        except Exception as error:
+            if os.environ.get("NCCOMPILE_DEBUG"):
+                traceback.print_exc()
+            _say(
+                f"internal error: {type(error).__name__}: {str(error).splitlines()[:1]}; please report it "
+                f"with the command line and the input (NCCOMPILE_DEBUG=1 shows where it happened)"
+            )
+            raise typer.Exit(INTERNAL) from error
+
+
+app = typer.Typer(
+    name="nccompile",
+    help="Compiles CNC part programs (DIN 66025) to planned toolpaths and runs them on virtual drives.",
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+_machine = typer.Typer(help="Machine files.", no_args_is_help=True, rich_markup_mode=None)
+app.command("compile", cls=Guarded)(compile_program)
+app.command("info", cls=Guarded)(info)
+app.command("dump", cls=Guarded)(dump)
+app.command("sample", cls=Guarded)(sample)
+app.command("run", cls=Guarded)(run_program)
+app.command("plot", cls=Guarded)(plot)
+app.command("explain", cls=Guarded)(explain)
+_machine.command("check", cls=Guarded)(check)
+_machine.callback()(lambda: None)
+app.add_typer(_machine, name="machine")
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"nccompile {VERSION}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", "-V", callback=_show_version, is_eager=True, help="Show the version."),
+    ] = False,
+) -> None:
+    """Options before the subcommand; `--version` acts in its callback."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Runs one command line and returns its exit code; nothing but Python's own start can raise."""
+    _exit_on_terminate()
+    try:
+        app(args=list(arguments), prog_name="nccompile")
+    except SystemExit as leaving:
+        code = leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None)
+    except KeyboardInterrupt:
+        code = INTERRUPTED
+    except BrokenPipeError:
+        code = 0
+    else:
+        code = 0
+    if code == INTERRUPTED:
+        _say("interrupted")
+    return _close_stdout(code)
+
+
+def _close_stdout(code: int) -> int:
+    """Flushes what is left; a reader that has gone (`| head`) is not an error."""
+    try:
+        sys.stdout.flush()
+    except BrokenPipeError:
+        nothing = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nothing, sys.stdout.fileno())
+        os.close(nothing)
+    except OSError as error:
+        _say(f"error: standard output cannot be written: {error.strerror or error}")
+        return 2
+    return code
+
+
+def _exit_on_terminate() -> None:
+    """A polite kill ends like an exception does, so that unfinished output is removed."""
+
+    def leave(number: int, frame: FrameType | None) -> None:
+        raise SystemExit(TERMINATED)
+
+    try:
+        signal.signal(signal.SIGTERM, leave)
+    except ValueError:  # not in the main thread: whoever runs us there handles signals
+        return
+
+
+def _say(text: str) -> None:
+    """A line on stderr; if stderr is closed nobody wants it."""
+    try:
+        print(text, file=sys.stderr)
+    except (OSError, ValueError):
+        return

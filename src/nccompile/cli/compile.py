@@ -1,0 +1,100 @@
+"""`nccompile compile`: a part program becomes an OutQueue."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nccompile.cli.options import (
+    AngleTolerance,
+    Define,
+    DiagnosticsFormat,
+    MachineFile,
+    MaxJumps,
+    Report,
+    SkipBlocks,
+    Start,
+    TimeLawOption,
+    Verify,
+)
+from nccompile.errors import UsageError
+
+if TYPE_CHECKING:
+    from nccompile.backend.ncq import Meta
+    from nccompile.toolchain import Compilation
+
+__all__ = ["compile_program"]
+
+
+def compile_program(
+    program: Annotated[Path, typer.Argument(help="The part program; - reads standard input.")],
+    machine: MachineFile = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE", help="The OutQueue; default: PROGRAM with .ncq."),
+    ] = None,
+    start: Start = None,
+    define: Define = None,
+    skip_blocks: SkipBlocks = False,
+    max_jumps: MaxJumps = None,
+    angle_tolerance: AngleTolerance = None,
+    time_law: TimeLawOption = None,
+    verify: Verify = False,
+    diagnostics: DiagnosticsFormat = Report.TEXT,
+    report: Annotated[
+        Path | None, typer.Option("--report", metavar="FILE", help="Totals and diagnostics as JSON.")
+    ] = None,
+) -> None:
+    """Compile a part program to an OutQueue; a program with errors leaves no file."""
+    from nccompile.cli.inputs import ProgramOptions, finish, machine_of, read_program
+    from nccompile.toolchain import Compilation
+
+    place = _output(program, output)
+    settings = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify)
+    options = settings.resolve(machine_of(machine))
+    compilation = Compilation(read_program(program), options)
+    meta = compilation.write(place)
+    if report is not None:
+        _write_report(report, compilation, meta, place)
+    finish(compilation, diagnostics)
+    assert meta is not None
+    print(_summary(meta, compilation, place))
+
+
+def _output(program: Path, output: Path | None) -> Path:
+    if output is not None:
+        return output
+    if str(program) == "-":
+        raise UsageError("name the OutQueue with -o when the program comes from standard input")
+    if program.suffix.lower() == ".ncq":
+        raise UsageError(f"{program} is an OutQueue, not a part program: it was compiled already")
+    return program.with_suffix(".ncq")
+
+
+def _summary(meta: Meta, compilation: Compilation, place: Path) -> str:
+    totals = meta.totals
+    warnings = sum(compilation.diagnostics.counts.values())
+    return (
+        f"{place}: {totals.segments} segments, {totals.length:.3f} mm, job time {totals.job_time:.3f} s"
+        + (f", {warnings} warning{'s' * (warnings != 1)}" if warnings else "")
+    )
+
+
+def _write_report(path: Path, compilation: Compilation, meta: Meta | None, place: Path) -> None:
+    from nccompile.backend.files import replacing
+    from nccompile.diagnostics import to_json
+
+    content = {
+        "program": compilation.source.name,
+        "output": None if meta is None else str(place),
+        "errors": compilation.diagnostics.errors,
+        "diagnostics": json.loads(to_json(compilation.diagnostics)),
+        "counts": dict(sorted(compilation.diagnostics.counts.items())),
+        "queue": None if meta is None else meta.as_dict(),
+    }
+    with replacing(path) as (file, commit):
+        file.write((json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
+        commit()

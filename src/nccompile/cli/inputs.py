@@ -1,0 +1,158 @@
+"""What a command works on: a part program, compiled in memory, or an OutQueue that was compiled before."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import typer
+
+from nccompile.backend import ncq
+from nccompile.cli.options import Report, parse_defines, parse_start
+from nccompile.cli.report import report
+from nccompile.decoder import DecodeOptions
+from nccompile.errors import UsageError
+from nccompile.machine.model import Machine, default_machine, load
+from nccompile.source import Source
+from nccompile.toolchain import Compilation, Options
+from nccompile.toolpath import Toolpath
+
+__all__ = [
+    "STDIN",
+    "Job",
+    "ProgramOptions",
+    "compiled",
+    "finish",
+    "is_queue",
+    "machine_of",
+    "open_job",
+    "read_program",
+    "read_queue",
+]
+
+STDIN = Path("-")
+_ZIP_STARTS = (b"PK\x03\x04", b"PK\x05\x06")
+
+
+@dataclass(frozen=True)
+class ProgramOptions:
+    """Options that act on a program while it is compiled, as they came from the command line."""
+
+    start: str | None = None
+    define: list[str] | None = None
+    skip_blocks: bool = False
+    max_jumps: int | None = None
+    angle_tolerance: float | None = None
+    time_law: str | None = None
+    verify: bool = False
+
+    def resolve(self, machine: Machine) -> Options:
+        """The options of a compilation; raises UsageError."""
+        jumps = {} if self.max_jumps is None else {"max_jumps": self.max_jumps}
+        decoder = DecodeOptions(
+            start=parse_start(self.start),
+            defines=parse_defines(self.define),
+            skip_blocks=self.skip_blocks,
+            max_switches=machine.path.max_switches,
+            **jumps,
+        )
+        return Options(machine, decoder, self.angle_tolerance, self.time_law, self.verify)
+
+    @property
+    def given(self) -> list[str]:
+        """The options in use, as they are spelt."""
+        return ["--" + name.replace("_", "-") for name, value in vars(self).items() if value]
+
+
+@dataclass(frozen=True)
+class Job:
+    """A planned path ready to be run, sampled or drawn.
+
+    name: of its file;  time_law: it was planned for;  chunks: the path from its start, each time it is called;
+    job_time [s];  segments: how many.
+    """
+
+    name: str
+    axes: tuple[str, ...]
+    time_law: str
+    chunks: Callable[[], Iterator[Toolpath]]
+    job_time: float
+    segments: int
+
+
+def machine_of(file: Path | None) -> Machine:
+    """The machine of a file, or the built-in one; raises MachineError."""
+    return default_machine() if file is None else load(file)
+
+
+def read_program(path: Path) -> Source:
+    """The program at a path, `-` for standard input; raises UsageError."""
+    if path == STDIN:
+        return Source.from_bytes("<stdin>", sys.stdin.buffer.read())
+    if is_queue(path):
+        raise UsageError(f"{path} is an OutQueue, not a part program: it was compiled already")
+    try:
+        return Source.read(path)
+    except OSError as error:
+        raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
+
+
+def read_queue(path: Path) -> ncq.Queue:
+    """The OutQueue at a path, checked from end to end; raises UsageError or QueueError."""
+    if not is_queue(path) and path.suffix.lower() != ".ncq" and path.is_file():
+        raise UsageError(f"{path} is not an OutQueue; compile it first: nccompile compile {path}")
+    return ncq.read(path).check()
+
+
+def is_queue(path: Path) -> bool:
+    """Whether a path is meant as an OutQueue: by its name or, whatever it is called, its first bytes."""
+    if path == STDIN:
+        return False
+    if path.suffix.lower() == ".ncq":
+        return True
+    try:
+        with path.open("rb") as file:
+            return file.read(4) in _ZIP_STARTS
+    except OSError as error:
+        raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
+
+
+def open_job(path: Path, machine: Machine, options: ProgramOptions, form: Report) -> Job:
+    """The planned path of an OutQueue or, compiled in memory, of a program.
+
+    Raises: UsageError, QueueError;  typer.Exit(1): the program has errors, which have been reported.
+    """
+    if path != STDIN and is_queue(path):
+        if options.given:
+            raise UsageError(f"{path} is an OutQueue: {', '.join(options.given)} acts on programs only")
+        queue = read_queue(path)
+        law = queue.meta.provenance.time_law
+        return Job(str(path), queue.axes, law, queue.chunks, queue.total.job_time, queue.total.segments)
+    compilation, held = compiled(path, machine, options, form, Compilation.planned)
+    axes = held[0].axes if held else ("X", "Y", "Z")
+    segments = sum(len(chunk) for chunk in held)
+    law = compilation.time_law
+    return Job(compilation.source.name, axes, law, lambda: iter(held), compilation.time.seconds, segments)
+
+
+def compiled(
+    path: Path,
+    machine: Machine,
+    options: ProgramOptions,
+    form: Report,
+    stage: Callable[[Compilation], Iterator[Toolpath]],
+) -> tuple[Compilation, list[Toolpath]]:
+    """A program compiled in memory up to a stage; raises as `open_job` does."""
+    compilation = Compilation(read_program(path), options.resolve(machine))
+    held = list(stage(compilation))
+    finish(compilation, form)
+    return compilation, held
+
+
+def finish(compilation: Compilation, form: Report) -> None:
+    """Reports what was found; ends the command with exit code 1 if there are errors."""
+    report(compilation.diagnostics, compilation.source, form)
+    if compilation.diagnostics.errors:
+        raise typer.Exit(1)

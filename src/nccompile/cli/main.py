@@ -1,0 +1,20 @@
+"""Entry point of the `nccompile` command."""
+
+from __future__ import annotations
+
+import sys
+
+from nccompile.version import VERSION
+
+__all__ = ["main"]
+
+
+def main() -> None:
+    """Runs the command line and leaves with its exit code; `--version` answers before anything is loaded."""
+    arguments = sys.argv[1:]
+    if arguments in (["--version"], ["-V"]):
+        print(f"nccompile {VERSION}")
+        return
+    from nccompile.cli.app import run
+
+    sys.exit(run(arguments))

@@ -1,0 +1,115 @@
+"""Options that several subcommands share, and the parsing of their values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+from math import isfinite
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from nccompile.errors import UsageError
+
+__all__ = [
+    "AngleTolerance",
+    "Define",
+    "DiagnosticsFormat",
+    "Input",
+    "MachineFile",
+    "MaxJumps",
+    "Report",
+    "SkipBlocks",
+    "Start",
+    "TimeLaw",
+    "TimeLawOption",
+    "Verify",
+    "parse_defines",
+    "parse_start",
+]
+
+
+class TimeLaw(StrEnum):
+    """Velocity profiles (SoftMotion §6.2.8)."""
+
+    TRAPEZOID = "trapezoid"
+    SIGMOID = "sigmoid"
+
+
+class Report(StrEnum):
+    """How diagnostics are written to standard error."""
+
+    TEXT = "text"
+    JSON = "json"
+
+
+Input = Annotated[Path, typer.Argument(metavar="QUEUE|PROGRAM", help="An OutQueue (.ncq) or a part program.")]
+MachineFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--machine", "-m", metavar="FILE", help="Machine file; default: a machine without limits of travel."
+    ),
+]
+Start = Annotated[
+    str | None,
+    typer.Option("--start", metavar="X0,Y0,..", help="Position before the first block; default: 0."),
+]
+Define = Annotated[
+    list[str] | None, typer.Option("--define", metavar="NAME=VALUE", help="A variable $NAME$; repeatable.")
+]
+SkipBlocks = Annotated[bool, typer.Option("--skip-blocks", help="Leave out blocks that start with '/'.")]
+MaxJumps = Annotated[
+    int | None,
+    typer.Option("--max-jumps", metavar="N", min=1, help="Jumps (G20) after which a loop counts as endless."),
+]
+AngleTolerance = Annotated[
+    float | None,
+    typer.Option(
+        "--angle-tolerance",
+        metavar="DEG",
+        min=0.0,
+        max=180.0,
+        help="Bend up to which the path does not stop.",
+    ),
+]
+TimeLawOption = Annotated[
+    TimeLaw | None, typer.Option("--time-law", help="Velocity profile; default: the machine's.")
+]
+Verify = Annotated[bool, typer.Option("--verify", help="Check the toolpath after every stage.")]
+DiagnosticsFormat = Annotated[Report, typer.Option("--diagnostics", help="Diagnostics as text or JSON.")]
+
+
+def parse_start(text: str | None) -> dict[str, float]:
+    """`X0,Y10.5` as positions by axis letter; raises UsageError."""
+    from nccompile.toolpath import AXIS_LETTERS
+
+    start: dict[str, float] = {}
+    for part in (text or "").split(",") if text else []:
+        word = part.strip().upper()
+        if word[:1] not in tuple(AXIS_LETTERS) or word[:1] in start:
+            raise UsageError(f"--start {text}: {part!r} is not an axis letter with a number, as in X0,Y10.5")
+        start[word[0]] = _number(word[1:].removeprefix("="), f"--start {text}")
+    return start
+
+
+def parse_defines(texts: Sequence[str] | None) -> dict[str, float]:
+    """`NAME=VALUE` texts as values by name; raises UsageError."""
+    values: dict[str, float] = {}
+    for text in texts or ():
+        name, equals, value = text.partition("=")
+        name = name.strip().strip("$")
+        if not equals or not name:
+            raise UsageError(f"--define {text}: write NAME=VALUE")
+        values[name] = _number(value, f"--define {text}")
+    return values
+
+
+def _number(text: str, where: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value):
+        raise UsageError(f"{where}: {text!r} is not a number")
+    return value

@@ -1,0 +1,135 @@
+"""`nccompile run`: an OutQueue or program on virtual drives."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from nccompile.cli.options import (
+    AngleTolerance,
+    Define,
+    DiagnosticsFormat,
+    Input,
+    MachineFile,
+    MaxJumps,
+    Report,
+    SkipBlocks,
+    Start,
+    TimeLawOption,
+)
+from nccompile.errors import UsageError
+
+if TYPE_CHECKING:
+    from nccompile.cli.inputs import Job
+    from nccompile.machine.model import Machine
+    from nccompile.runtime.task import Options
+
+__all__ = ["run_program"]
+
+NEVER = "never"
+LONGEST_DELAY = 86_400.0
+
+
+def run_program(
+    path: Input,
+    machine: MachineFile = None,
+    realtime: Annotated[
+        bool, typer.Option("--realtime", help="Cycles at their deadlines; default: as fast as it can.")
+    ] = False,
+    override: Annotated[
+        float, typer.Option("--override", metavar="FACTOR", help="Factor on velocities, 0.01 to 10.")
+    ] = 1.0,
+    cycle_us: Annotated[
+        int | None,
+        typer.Option("--cycle-us", metavar="US", min=100, max=100_000, help="Default: the machine's cycle."),
+    ] = None,
+    m_delay: Annotated[
+        str,
+        typer.Option("--m-delay", metavar="SECONDS", help="Until an M function is acknowledged, or 'never'."),
+    ] = "0",
+    at: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--at", metavar="'TIME INPUT=VALUE'", help="An input at a time, '2.5s override=0.5'; repeatable."
+        ),
+    ] = None,
+    trace: Annotated[
+        Path | None, typer.Option("--trace", metavar="FILE", help="Every cycle as FILE.csv or FILE.npz.")
+    ] = None,
+    report: Annotated[
+        Path | None, typer.Option("--report", metavar="FILE", help="The report as JSON, all events included.")
+    ] = None,
+    start: Start = None,
+    define: Define = None,
+    skip_blocks: SkipBlocks = False,
+    max_jumps: MaxJumps = None,
+    angle_tolerance: AngleTolerance = None,
+    time_law: TimeLawOption = None,
+    diagnostics: DiagnosticsFormat = Report.TEXT,
+) -> None:
+    """Run an OutQueue or program on virtual drives and print what happened."""
+    from nccompile.cli.inputs import ProgramOptions, machine_of, open_job
+    from nccompile.cli.run_report import finish_run, report_lines
+    from nccompile.runtime.task import CyclicTask
+    from nccompile.runtime.trace import open_trace
+
+    axes = _with_cycle(machine_of(machine), cycle_us)
+    options = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law)
+    job = open_job(path, axes, options, diagnostics)
+    with open_trace(trace) if trace is not None else nullcontext() as sink:
+        task = CyclicTask(job.chunks(), axes, _options(job, realtime, override, m_delay, at), trace=sink)
+        result = task.run()
+    if report is not None:
+        _write_report(report, result.to_json())
+    for line in report_lines(result):
+        print(line)
+    finish_run(result, diagnostics)
+
+
+def _with_cycle(machine: Machine, cycle_us: int | None) -> Machine:
+    """The machine with another cycle."""
+    if cycle_us is None:
+        return machine
+    identity = machine.identity.model_copy(update={"cycle_us": cycle_us})
+    return machine.model_copy(update={"identity": identity})
+
+
+def _options(job: Job, realtime: bool, override: float, m_delay: str, at: list[str] | None) -> Options:
+    from nccompile.passes.velocity.settings import LAWS
+    from nccompile.runtime.interpolator import OVERRIDE_MAX, OVERRIDE_MIN
+    from nccompile.runtime.schedule import parse_command
+    from nccompile.runtime.task import Options
+
+    if not OVERRIDE_MIN <= override <= OVERRIDE_MAX:
+        raise UsageError(f"--override {override:g}: it goes from {OVERRIDE_MIN:g} to {OVERRIDE_MAX:g}")
+    return Options(
+        realtime=realtime,
+        override=override,
+        commands=[parse_command(text) for text in at or ()],
+        m_delay=_delay(m_delay),
+        vel_mode=LAWS[job.time_law],
+        file=job.name,
+    )
+
+
+def _delay(text: str) -> float | None:
+    if text.strip().lower() == NEVER:
+        return None
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = -1.0
+    if not 0 <= seconds <= LONGEST_DELAY:
+        raise UsageError(f"--m-delay {text}: write seconds from 0 to {LONGEST_DELAY:g}, or '{NEVER}'")
+    return seconds
+
+
+def _write_report(path: Path, text: str) -> None:
+    from nccompile.backend.files import replacing
+
+    with replacing(path) as (file, commit):
+        file.write(text.encode() + b"\n")
+        commit()

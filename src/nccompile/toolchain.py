@@ -1,0 +1,136 @@
+"""The stages in plain order, from program text to OutQueue; reading this file is reading the product.
+
+    source -> decode -> check_axes, check_travel -> plan -> write | run | sample | plot
+
+Every stage is a generator over chunks: a program of any length passes through in bounded memory, and
+whoever pulls at the end (a file, a cyclic task, a plot) drives the ones before it.  Findings in the user's
+program are collected in `Diagnostics`; a program with errors leaves no file and is not run.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path, PurePath
+
+from nccompile.backend import ncq
+from nccompile.decoder import Decoded, DecodeOptions, decode
+from nccompile.diagnostics import Diagnostics
+from nccompile.machine.limits import check_axes, check_travel
+from nccompile.machine.model import Machine
+from nccompile.passes.velocity import PlanSettings, plan, row_times
+from nccompile.source import Source
+from nccompile.toolpath import Toolpath
+from nccompile.toolpath.verify import verify_chain
+
+__all__ = ["Compilation", "JobTime", "Options", "machine_digest"]
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a compilation needs besides the program.
+
+    decoder: start position, variables, skipped blocks, jump limit;  angle_tolerance [deg] and time_law: those
+    of the machine if None;  verify: check the invariants of the toolpath after every stage.
+    """
+
+    machine: Machine
+    decoder: DecodeOptions = field(default_factory=DecodeOptions)
+    angle_tolerance: float | None = None
+    time_law: str | None = None
+    verify: bool = False
+
+
+@dataclass
+class JobTime:
+    """Adds up the time of planned chunks on their way."""
+
+    seconds: float = 0.0
+    _velocity: float = 0.0
+
+    def along(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
+        """Hands chunks on and counts their time at override 1; M functions count as acknowledged at once."""
+        for chunk in chunks:
+            if len(chunk):
+                assert chunk.v_end is not None
+                self.seconds += float(row_times(chunk, self._velocity).sum())
+                self._velocity = float(chunk.v_end[-1])
+            yield chunk
+
+
+class Compilation:
+    """One program on its way through the stages; `diagnostics` and `time` fill while its chunks are pulled."""
+
+    def __init__(self, source: Source, options: Options) -> None:
+        self.source = source
+        self.options = options
+        self.diagnostics = Diagnostics()
+        self.time = JobTime()
+
+    @property
+    def time_law(self) -> str:
+        """The velocity profile that is planned."""
+        return self.options.time_law or self.options.machine.path.time_law
+
+    @property
+    def angle_tolerance(self) -> float:
+        """The bend up to which the path does not stop [deg]."""
+        given = self.options.angle_tolerance
+        return self.options.machine.path.angle_tolerance if given is None else given
+
+    def decoded(self) -> Iterator[Toolpath]:
+        """The toolpath as programmed, without velocities, checked against axes and travel of the machine."""
+        return self._checked(self._verified(self._program()))
+
+    def planned(self) -> Iterator[Toolpath]:
+        """The toolpath with its velocities; pulling it counts its time."""
+        program = self._program()
+        settings = PlanSettings.from_machine(
+            self.options.machine,
+            program.axes,
+            angle_tolerance_deg=self.angle_tolerance,
+            time_law=self.time_law,
+        )
+        chunks = self._checked(self._verified(program))
+        return self.time.along(self._verified(plan(chunks, settings)))
+
+    def write(self, path: Path) -> ncq.Meta | None:
+        """Writes the OutQueue; no file is left, and None returned, if the program has errors."""
+        return ncq.write(
+            path,
+            self.planned(),
+            self.provenance(),
+            job_time=lambda: self.time.seconds,
+            keep=lambda: not self.diagnostics.errors,
+        )
+
+    def provenance(self) -> ncq.Provenance:
+        """What the queue says of its origin; names go without folders."""
+        return ncq.Provenance(
+            source=PurePath(self.source.name).name,
+            source_sha256=self.source.sha256,
+            machine=self.options.machine.name,
+            machine_sha256=machine_digest(self.options.machine),
+            angle_tolerance=self.angle_tolerance,
+            time_law=self.time_law,
+        )
+
+    def _program(self) -> Decoded:
+        return decode(self.source, self.options.decoder, self.diagnostics)
+
+    def _verified(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
+        return verify_chain(chunks) if self.options.verify else iter(chunks)
+
+    def _checked(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
+        for chunk in chunks:
+            check_axes(chunk, self.options.machine, self.source, self.diagnostics)
+            check_travel(chunk, self.options.machine, self.source, self.diagnostics)
+            yield chunk
+
+
+def machine_digest(machine: Machine) -> str:
+    """SHA-256 of the machine's content, whatever its file looks like (order, comments, defaults left out)."""
+    content = machine.model_dump(mode="json", by_alias=True)
+    return hashlib.sha256(json.dumps(content, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
