@@ -46,6 +46,7 @@ class ChunkBuilder:
         self._marks: dict[int, int] = {}
         self._events: list[tuple[int, int, int, float, float, float, int]] = []
         self._names: dict[str, int] = {}
+        self._named = 0
 
     def __len__(self) -> int:
         return self._first + len(self._rows)
@@ -104,7 +105,7 @@ class ChunkBuilder:
         )
         curve, shapes = self._take_curves(first, n)
         events = [(row[0] - first, *row[1:]) for row in self._events if row[0] < first + n]
-        names = 1 + max((row[6] for row in self._events if row[0] < first + n), default=-1)
+        self._named = max([self._named, *(1 + row[6] for row in events)])
         chunk = Toolpath(
             axes=self.axes,
             start=np.array(self.start),
@@ -122,7 +123,7 @@ class ChunkBuilder:
             curves=shapes,
             events=Events.from_rows(events),
             first=first,
-            names=tuple(self._names)[:names],
+            names=tuple(self._names)[: self._named],
         )
         if n:
             self.start = self._targets[n - 1]

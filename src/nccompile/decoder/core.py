@@ -56,6 +56,8 @@ class Core:
         self.modal = Modal(start)
         self.path = ChunkBuilder(axes, start, options.chunk)
         self.variables = Variables(options.defines)
+        self.incomplete = False
+        """A block was left out because of an error: what it would have set is unknown."""
         self._diagnostics = diagnostics
         self._seen: set[tuple[str, Span]] | None = set() if jumps else None
         self._jump: tuple[list[float], int] | None = None

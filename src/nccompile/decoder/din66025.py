@@ -13,7 +13,7 @@ from nccompile.decoder.tables import Group
 from nccompile.decoder.variables import INT_MAX, INT_MIN
 from nccompile.decoder.words import Statement, evaluate, set_modal
 from nccompile.diagnostics import Diagnostics
-from nccompile.parser import parse
+from nccompile.parser import Block, parse
 from nccompile.source import Source
 from nccompile.toolpath.columns import AXIS_LETTERS, EventKind, Kind, Toolpath
 
@@ -47,16 +47,25 @@ class Din66025:
         """The toolpath, in chunks whose borders are the only thing that depends on their size."""
         core, path = self._core, self._core.path
         for block in self._flow:
-            if block.words and not (block.skip and self._skip):
-                statement = evaluate(core, block)
-                if statement is not None and set_modal(core, statement):
-                    self._execute(statement)
+            if not (block.skip and self._skip):
+                self._run(block)
             if path.is_full:
                 yield from path.ready()
         self._motion.spline.close(None)
         core.flush_position()
         self._motion.marks.finish()
         yield from path.finish()
+
+    def _run(self, block: Block) -> None:
+        core = self._core
+        if not block.sound:
+            core.incomplete = True
+        elif block.words:
+            statement = evaluate(core, block)
+            if statement is not None and set_modal(core, statement):
+                self._execute(statement)
+            else:
+                core.incomplete = True
 
     def _execute(self, statement: Statement) -> None:
         instruction = statement.instruction

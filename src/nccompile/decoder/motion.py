@@ -23,7 +23,9 @@ from nccompile.geometry import (
     parabola_by_tangents,
 )
 from nccompile.geometry.tolerance import COINCIDENT
+from nccompile.source import Span
 from nccompile.toolpath.columns import Kind
+from nccompile.toolpath.lengths import path_length
 from nccompile.units import rad_from_deg
 
 __all__ = ["Motion"]
@@ -49,7 +51,7 @@ class Motion:
         values = statement.values
         if MOTION.isdisjoint(values) and not statement.switches:
             return
-        if core.modal.feed == 0.0 and code != 0 and not self._warned_feed:
+        if core.modal.feed == 0.0 and code != 0 and not self._warned_feed and not core.incomplete:
             self._warned_feed = True
             core.warn(
                 "NC101", f"feed move G{code} before any feed rate; the machine's default holds",
@@ -90,8 +92,10 @@ class Motion:
     def _straight(self, statement: Statement, target: list[float], kind: Kind) -> None:
         modal = self._core.modal
         position = modal.position
-        dx, dy = target[0] - position[0], target[1] - position[1]
-        length = self._length(sqrt(dx * dx + dy * dy), target)
+        dx, dy, dz = target[0] - position[0], target[1] - position[1], target[2] - position[2]
+        length = sqrt(dx * dx + dy * dy + dz * dz)
+        if length == 0.0 or modal.profile:
+            length = path_length(self._core.axes, kind, position, target, profile=modal.profile)
         contour = kind is Kind.LINE and (dx != 0.0 or dy != 0.0)
         leaving: Curve | tuple[float, float] | None = (dx, dy) if contour else None
         if length > 0.0 or kind is Kind.POSITIONING:
@@ -117,10 +121,12 @@ class Motion:
             curve = _CURVES[code](self, statement, x0, y0, target[0], target[1])
         except Impossible as reason:
             shape = {2: "arc", 3: "arc", 6: "parabola"}.get(code, "ellipse")
-            core.warn(_CURVE_CODE[code], f"no {shape}, a line instead: {reason}", statement.block.span)
+            core.warn(_CURVE_CODE[code], f"no {shape}, a line instead: {reason}", _shape_span(statement))
             self._straight(statement, target, Kind.LINE)
             return
-        length = self._length(curve.length, target)
+        length, rise = curve.length, self._rise(target)
+        if rise != 0.0:
+            length = sqrt(length * length + rise * rise)
         self.spline.close(curve.start_tangent)
         row = core.add(_CURVE_KIND[code], target, length, statement.line, curve)
         self._finish(statement, row, length)
@@ -136,19 +142,6 @@ class Motion:
         """Travel of Z that counts as path length: none if Z runs in the S-profile [mm]."""
         modal = self._core.modal
         return 0.0 if modal.profile & 4 else target[2] - modal.position[2]
-
-    def _length(self, flat: float, target: list[float]) -> float:
-        """The path length of a segment whose way in X-Y is `flat` [mm].
-
-        That of X-Y-Z; of the additional axes where X, Y and Z stand still (docs/decisions/003).
-        """
-        rise = self._rise(target)
-        length = sqrt(flat * flat + rise * rise) if rise != 0.0 else flat
-        if length > COINCIDENT:
-            return length
-        position = self._core.modal.position
-        moved = sqrt(sum((b - a) * (b - a) for a, b in zip(position[2:], target[2:], strict=True)))
-        return max(length, moved)
 
     def _centre(self, statement: Statement, x0: float, y0: float) -> tuple[float, float]:
         """The point of I and J; one that is missing keeps the start's coordinate."""
@@ -188,6 +181,12 @@ class Motion:
             raise Impossible("start and end are the same point")
         ix, iy = self._centre(statement, x0, y0)
         return parabola_by_tangents(x0, y0, x1, y1, ix, iy)
+
+
+def _shape_span(statement: Statement) -> Span:
+    """The words that shape a curve, or the whole block."""
+    spans = [word.span for word in statement.block.words if word.letter in {"I", "J", "K", "R"}]
+    return spans[0].to(spans[-1]) if spans else statement.block.span
 
 
 _CURVES = {2: Motion._arc, 3: Motion._arc, 6: Motion._parabola, 8: Motion._ellipse, 9: Motion._ellipse}

@@ -62,6 +62,12 @@ class Statement:
                 return word.span
         return self.block.span
 
+    @property
+    def name(self) -> str:
+        """The instruction as a program writes it."""
+        assert self.instruction is not None
+        return self.instruction.name if self.instruction.code >= 0 else f"M{self.number}"
+
     def place(self, letter: str) -> Span:
         """Where the word that holds stands, or the whole block."""
         for word in self.block.words:
@@ -214,25 +220,28 @@ def _check(core: Core, statement: Statement) -> bool:
             _report_unused(core, statement, values.keys() - MODAL, "in a block that moves nothing")
             return True
         if core.modal.drive is None:
-            core.warn(
-                "NC106", "no instruction has been programmed yet; the block runs as G0", statement.block.span,
-                "start it with G0 or G1",
-            )  # fmt: skip
             core.modal.drive = 0
+            if not core.incomplete:
+                core.warn(
+                    "NC106", "no instruction has been programmed yet; the block runs as G0",
+                    statement.block.span, "start it with G0 or G1",
+                )  # fmt: skip
         instruction = statement.instruction = INSTRUCTIONS[core.modal.drive]
     if instruction.group is not Group.DRIVE:
         for word, _ in statement.switches:
-            core.warn("NC105", f"{word.letter} has no effect with {instruction.name}", word.span)
+            core.warn("NC105", f"{word.letter} has no effect with {statement.name}", word.span)
         statement.switches = []
     if not values.keys() <= instruction.accepts:
-        _report_unused(core, statement, values.keys() - instruction.accepts, f"with {instruction.name}")
+        _report_unused(core, statement, values.keys() - instruction.accepts, f"with {statement.name}")
     return True
 
 
 def _report_unused(core: Core, statement: Statement, letters: set[str], where: str) -> None:
     for letter in sorted(letters):
-        hint = "O and L place a switch: put H before them" if letter in "OL" else LETTERS[letter].meaning
-        core.warn("NC105", f"{letter} has no effect {where}", statement.place(letter), f"{letter}: {hint}")
+        hint = f"{letter}: {LETTERS[letter].meaning}"
+        if letter in "OL":
+            hint = f"to place a switch put H before {letter}"
+        core.warn("NC105", f"{letter} has no effect {where}", statement.place(letter), hint)
         del statement.values[letter]
 
 

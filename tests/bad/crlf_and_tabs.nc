@@ -1,0 +1,3 @@
+% tabs
+N10	G1	X1	F20
+N20	G1	X1..2N30 G1 XX

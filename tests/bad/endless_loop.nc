@@ -1,0 +1,5 @@
+% endless
+N10 G36 D1
+N20 G1 X1 F20
+N30 G1 X0
+N40 G20 L20

@@ -1,0 +1,6 @@
+% numbers
+N10 G1 X1.2.3 F20
+N20 G1 X--5
+N30 G1 X1e-05
+N40 G1 X. Y+.5 Z-0
+N50 G1 X+-1

@@ -1,0 +1,11 @@
+% structure
+N10 G1 X1 F20 N20
+N30.5 G1 X2
+N G1 X3
+G1 /X4
+N50 G90 G1 X5
+N60 G0.5 X6
+N70 G21
+N80 X7 G1
+% second
+N90 G1 X8
