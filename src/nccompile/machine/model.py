@@ -107,7 +107,7 @@ class Axis(_Section):
     rapid: float | None = Field(
         default=None, gt=0, le=_VELOCITY_MAX, json_schema_extra=_unit("mm/s or deg/s")
     )
-    """Velocity of G0 [mm/s or deg/s]; `velocity` without the key."""
+    """Velocity of G0 [mm/s or deg/s]; without the key G0 runs at the program's F as in SoftMotion."""
     following_error: float = Field(default=1.0, gt=0, le=_POSITION_MAX, json_schema_extra=_unit("mm or deg"))
     """Greatest set minus actual position; beyond it the drive faults [mm or deg]."""
     lag: float = Field(default=0.0, ge=0, le=10, json_schema_extra=_unit("s"))

@@ -121,7 +121,8 @@ class Output:
         """
         target = self._kinematics.to_axes(burst.position[row : row + 1])[0]
         at, cycle = self._limits, self._machine.cycle
-        way = Bridge(self.set_position, target, at.rapid, at.acceleration, cycle)
+        velocity = np.minimum(at.rapid, at.velocity)
+        way = Bridge(self.set_position, target, velocity, at.acceleration, cycle)
         if len(way) > 1:
             self.axes.enter(AxisState.DISCRETE_MOTION)
             self._run(way, len(way) - 1, burst, row, ALL_CHECKS)

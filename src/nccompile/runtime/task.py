@@ -155,7 +155,8 @@ class CyclicTask:
         burst = self.interpolator.advance(n, patient=patient)
         jumped = burst.reason == k.JUMPED
         watch = NO_ACCELERATION_CHECK if inputs.emergency_stop or inputs.abort else ALL_CHECKS
-        done = self.output.put(burst, 0, len(burst) - int(jumped), watch)
+        end = self._standing_from(burst, n)
+        done = self.output.put(burst, 0, len(burst) - int(jumped) if end is None else end, watch)
         if self.output.fault is not None and saved is not None and done < len(burst):
             self.interpolator.restore(saved)
             burst, jumped = self.interpolator.advance(done, patient=patient), False
@@ -166,7 +167,12 @@ class CyclicTask:
             return
         if jumped:
             self.output.bridge(burst, len(burst) - 1)
-        self._after(burst, n, patient)
+        if self.output.fault is not None:
+            self._outcome = "fault"
+        elif end is not None:
+            self._report_standstill()
+        else:
+            self._after(burst, patient)
 
     def _cycles_at_once(self) -> int:
         """Cycles until something has to be looked at: a command, an acknowledge; one in real time."""
@@ -193,12 +199,9 @@ class CyclicTask:
             return False
         return self.output.now >= self._acknowledge_at()
 
-    def _after(self, burst: Burst, n: int, patient: bool) -> None:
-        """Reacts to the end of a burst that went well or ended in a fault of the bridge."""
+    def _after(self, burst: Burst, patient: bool) -> None:
+        """Reacts to why a burst ended."""
         out = self.interpolator.outputs
-        if self.output.fault is not None:
-            self._outcome = "fault"
-            return
         if not patient and out.underrun:
             self.report.underruns += len(burst)
         self._is_starved = False
@@ -213,8 +216,6 @@ class CyclicTask:
             self._outcome = "aborted" if self.interpolator.inputs.abort else "finished"
         elif burst.reason == k.NEED_DATA and patient:
             self._is_starved = self._feeder.fill() == 0 and not self._feeder.is_done
-        elif len(burst) == n and burst.reason == k.RAN:
-            self._check_held()
 
     def _m_done(self) -> None:
         """Logs the M function that waited."""
@@ -223,25 +224,37 @@ class CyclicTask:
         self.report.m_functions.add(self._m._replace(waited=waited))
         self._m = None
 
-    def _check_held(self) -> None:
-        """Ends a run that stands and that nothing will set going again."""
+    def _standing_from(self, burst: Burst, n: int) -> int | None:
+        """The end of the first cycle of a standstill that nothing will end; None if there is none."""
         out, inputs = self.interpolator.outputs, self.interpolator.inputs
-        if out.status is not Status.WAIT or out.velocity != 0.0 or not self._schedule.is_done:
-            return
-        stops = [name for name in _STOPS if getattr(inputs, name)]
+        if out.status is not Status.WAIT or not self._schedule.is_done:
+            return None
+        if len(burst) < n or burst.reason != k.RAN or burst.velocity[-1] != 0.0:
+            return None
+        if out.m and not inputs.emergency_stop:
+            held = self.options.m_delay is None and not inputs.ack_m
+        else:
+            held = any(getattr(inputs, name) for name in _STOPS)
+        if not held:
+            return None
+        others = np.flatnonzero((burst.status != Status.WAIT) | (burst.velocity != 0.0))
+        return int(others[-1]) + 2 if len(others) else 1
+
+    def _report_standstill(self) -> None:
+        """The run ends here: says what it waits for."""
+        out, inputs = self.interpolator.outputs, self.interpolator.inputs
         time = f"{(self.output.now - 1) * self.machine.cycle:.6g} s"
-        if out.m and self.options.m_delay is None and not inputs.ack_m:
+        if out.m and not inputs.emergency_stop:
             self._report(
-                "NC706", Severity.ERROR, f"M{out.m} waits for an acknowledge that does not come ({time})",
+                "NC706", Severity.ERROR, f"M{out.m} waits at {time} for an acknowledge that does not come",
                 out.source_line, "acknowledge it with a command ack_m=1, or after a delay",
             )  # fmt: skip
-        elif stops and (out.m == 0 or inputs.emergency_stop):
+        else:
+            stops = [name for name in _STOPS if getattr(inputs, name)]
             self._report(
                 "NC705", Severity.WARNING, f"the run was stopped at {time} and not released: {', '.join(stops)}",
                 out.source_line, f"release it with a later command {stops[0]}=0",
             )  # fmt: skip
-        else:
-            return
         self._outcome = "stopped"
 
     def _log_switches(self, burst: Burst, done: int) -> None:
