@@ -1,0 +1,228 @@
+"""Pictures of a path and of its dynamics, drawn with matplotlib without a display.
+
++-----------------+--------------+      XY: rapids green, feed blue, switch points and M functions with
+| XY              | path velocity|          their numbers, start and end
+|                 +--------------+      isometric: only if Z moves
+|                 | axes: mm/s   |      right: over time, with the machine's limits as dashed lines where
++-----------------+--------------+          they are near
+| isometric       | axes: mm/s²  |
++-----------------+--------------+      The same input gives the same bytes: no dates, no versions.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable
+from math import cos, pi, sin
+from pathlib import Path
+from typing import Any, Protocol
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure, SubFigure
+
+from nccompile.errors import UsageError
+from nccompile.toolpath.columns import Floats, Toolpath
+from nccompile.view.drawing import Drawing, draw, thin
+from nccompile.view.motion import Motion, envelope
+
+__all__ = ["Limits", "plot_dynamics", "plot_path", "save"]
+
+_RAPID, _FEED, _INK, _GRID = "#2f9e44", "#1c5fb8", "#222222", "#d9dde3"
+_SWITCH, _M = "#d9480f", "#7048a8"
+_AXIS_COLORS = ("#c92a2a", "#2f9e44", "#1c5fb8", "#e08700", "#7048a8", "#0b8793", "#a05a2c", "#d6338a",
+                "#5c6770", "#80961a", "#3d2c8d")  # fmt: skip
+_STYLE: Any = {
+    "font.family": "DejaVu Sans", "font.size": 9.0, "axes.titlesize": 10.0, "axes.titleweight": "bold",
+    "axes.titlelocation": "left", "axes.edgecolor": "#8a929c", "axes.labelcolor": _INK, "axes.grid": True,
+    "axes.axisbelow": True, "axes.spines.top": False, "axes.spines.right": False, "grid.color": _GRID,
+    "grid.linewidth": 0.6, "xtick.color": "#555c66", "ytick.color": "#555c66", "legend.frameon": False,
+    "agg.path.chunksize": 20000, "svg.hashsalt": "nccompile",
+}  # fmt: skip
+
+_DPI = 110
+_CELLS = 3000  # polyline points nearer than 1/3000 of the picture are one
+_BINS = 1500  # stretches of time in a curve: about one a pixel
+_LABELS = 40  # more labels than this cover the path
+_NEAR = 2.0  # a limit is drawn if it is at most this many times the greatest value
+
+_PROJECTION_ANGLE = pi / 6.0
+
+
+class Limits(Protocol):
+    """Velocity and acceleration limits of the axes, f8 (k,), inf where there is none (`machine.AxisLimits`)."""
+
+    @property
+    def velocity(self) -> Floats:
+        """Shape (k,) [mm/s or deg/s]."""
+
+    @property
+    def acceleration(self) -> Floats:
+        """Shape (k,) [mm/s² or deg/s²]."""
+
+
+def plot_path(chunks: Iterable[Toolpath], *, title: str = "") -> Figure:
+    """A figure of the path alone."""
+    with mpl.rc_context(_STYLE):
+        figure = _figure(11.0, 8.0, title)
+        _path(figure, draw(chunks), stacked=False)
+    return figure
+
+
+def plot_dynamics(motion: Motion, limits: Limits | None = None, *, title: str = "") -> Figure:
+    """A figure of path velocity, axis velocities and axis accelerations over time."""
+    with mpl.rc_context(_STYLE):
+        figure = _figure(11.0, 8.0, title)
+        _dynamics(figure, motion, limits)
+    return figure
+
+
+def save(
+    file: Path,
+    chunks: Iterable[Toolpath],
+    motion: Motion | None = None,
+    limits: Limits | None = None,
+    *,
+    title: str = "",
+) -> None:
+    """Writes the picture of a path, and of its dynamics if samples are given, as PNG, SVG or PDF.
+
+    Raises:   UsageError: a file name that ends in something else.  OSError: the file cannot be written.
+    """
+    kind = file.suffix.lower().lstrip(".") or "png"
+    stamps = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+    if kind not in stamps:
+        raise UsageError(f"{file.name}: pictures are written as png, svg or pdf")
+    if motion is None:
+        figure = plot_path(chunks, title=title)
+    else:
+        with mpl.rc_context(_STYLE):
+            figure = _figure(16.0, 9.0, title)
+            halves: Any = figure.subfigures(1, 2)
+            left, right = halves
+            _path(left, draw(chunks), stacked=True)
+            _dynamics(right, motion, limits)
+    picture = io.BytesIO()
+    with mpl.rc_context(_STYLE):
+        figure.savefig(picture, format=kind, dpi=_DPI, metadata=stamps[kind])
+    file.write_bytes(picture.getvalue())
+
+
+def _figure(width: float, height: float, title: str) -> Figure:
+    figure = Figure(figsize=(width, height), layout="constrained", facecolor="white")
+    FigureCanvasAgg(figure)
+    if title:
+        figure.suptitle(title, fontsize=12.0, fontweight="bold", color=_INK)
+    return figure
+
+
+def _path(figure: Figure | SubFigure, drawing: Drawing, *, stacked: bool) -> None:
+    """The XY view, and the isometric one below or beside it if Z moves."""
+    low, high = drawing.box()
+    solid = high[2] - low[2] > 0.0
+    if not solid:
+        plane = figure.subplots(1, 1)
+    elif stacked:
+        plane, iso = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
+    else:
+        plane, iso = figure.subplots(1, 2, width_ratios=(1.3, 1.0))
+    _view(plane, drawing, np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), labels=True)
+    plane.set(title="Path, X-Y", xlabel="X [mm]", ylabel="Y [mm]")
+    if solid:
+        c, s = cos(_PROJECTION_ANGLE), sin(_PROJECTION_ANGLE)
+        _view(iso, drawing, np.array([[c, -c, 0.0], [s, s, 1.0]]), labels=False)
+        iso.set(title=f"Path, isometric   (Z {low[2]:g} .. {high[2]:g} mm)", xticks=[], yticks=[])
+        for spine in iso.spines.values():
+            spine.set_visible(False)
+        _triad(iso, (c, s))
+
+
+def _view(axes: Any, drawing: Drawing, projection: Floats, *, labels: bool) -> None:
+    """The polylines and marks in one projection, Shape (2, 3)."""
+    corners = [thin(line @ projection.T, 1e-300) for line in (drawing.rapid, drawing.feed)]
+    points = np.vstack([*corners, np.array([drawing.start, drawing.end]) @ projection.T])
+    span = float(np.max(np.nanmax(points, axis=0) - np.nanmin(points, axis=0))) or 1.0
+    rapid, feed = (thin(line, span / _CELLS) for line in corners)
+    axes.plot(*rapid.T, color=_RAPID, linewidth=0.9, dashes=(5, 3), label="rapid", zorder=2)
+    axes.plot(*feed.T, color=_FEED, linewidth=1.2, solid_joinstyle="round", label="feed", zorder=3)
+    for kind, name, color, marker in (
+        ("switch", "switch point", _SWITCH, "o"),
+        ("m", "M function", _M, "D"),
+    ):
+        spots = [spot for spot in drawing.spots if spot.kind == kind]
+        if spots:
+            at = np.array([spot.point for spot in spots]) @ projection.T
+            axes.plot(*at.T, marker, color=color, markersize=4.5, label=name, zorder=5)
+    start, end = (np.array(point) @ projection.T for point in (drawing.start, drawing.end))
+    axes.plot(*start, "o", markersize=8, markerfacecolor="none", color=_INK, label="start", zorder=4)
+    axes.plot(*end, "s", markersize=8, markerfacecolor="none", color=_INK, label="end", zorder=4)
+    if labels:
+        _labels(axes, drawing, projection)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.09), ncols=6, fontsize=8, columnspacing=1.2)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.06)
+
+
+def _labels(axes: Any, drawing: Drawing, projection: Floats) -> None:
+    """The numbers of switches and M functions; those at one place in one label, each number once."""
+    places: dict[tuple[float, float], list[str]] = {}
+    for spot in drawing.spots:
+        x, y = np.array(spot.point) @ projection.T
+        names = places.setdefault((round(float(x), 6), round(float(y), 6)), [])
+        if spot.label not in names:
+            names.append(spot.label)
+    for place, names in list(places.items())[:_LABELS]:
+        text = " ".join(names[:4]) + (" .." if len(names) > 4 else "")
+        color = _M if names[0].startswith("M") else _SWITCH
+        axes.annotate(
+            text, place, xytext=(5, 5), textcoords="offset points", fontsize=7.5, color=color, zorder=6,
+            bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": "none", "alpha": 0.75},
+        )  # fmt: skip
+
+
+def _triad(axes: Any, angle: tuple[float, float]) -> None:
+    """The directions of X, Y and Z in the corner of the isometric view."""
+    c, s = angle
+    for name, (dx, dy) in (("X", (c, s)), ("Y", (-c, s)), ("Z", (0.0, 1.0))):
+        axes.annotate(
+            name, xy=(40, 8), xytext=(40 + 26 * dx, 8 + 26 * dy), xycoords="axes points",
+            textcoords="axes points", fontsize=8, color="#555c66", ha="center", va="center",
+            arrowprops={"arrowstyle": "<-", "color": "#8a929c", "linewidth": 0.9, "shrinkA": 5, "shrinkB": 0},
+        )  # fmt: skip
+
+
+def _dynamics(figure: Figure | SubFigure, motion: Motion, limits: Limits | None) -> None:
+    """Three curves over time, above each other."""
+    path, velocity, acceleration = figure.subplots(3, 1, sharex=True)
+    path.fill_between(*envelope(motion.t, motion.v, _BINS), color=_FEED, alpha=0.15, linewidth=0)
+    path.plot(*envelope(motion.t, motion.v, _BINS), color=_FEED, linewidth=1.0)
+    path.set(title="Path velocity", ylabel="v [mm/s]")
+    path.set_ylim(bottom=0.0)
+    moving = motion.moving()
+    rotary = any(motion.axes[i] in "ABC" for i in moving)
+    _per_axis(velocity, motion, motion.velocities(), moving, None if limits is None else limits.velocity)
+    velocity.set(title="Axis velocity", ylabel="v [mm/s, deg/s]" if rotary else "v [mm/s]")
+    _per_axis(
+        acceleration, motion, motion.accelerations(), moving, None if limits is None else limits.acceleration
+    )
+    acceleration.set(
+        title="Axis acceleration", ylabel="a [mm/s², deg/s²]" if rotary else "a [mm/s²]", xlabel="time [s]"
+    )
+    acceleration.margins(x=0.01)
+
+
+def _per_axis(axes: Any, motion: Motion, values: Floats, moving: list[int], limit: Floats | None) -> None:
+    """One curve an axis; its limit as dashed lines if it is near, in the legend always."""
+    largest = float(np.nanmax(np.abs(values[:, moving]), initial=0.0)) if moving else 0.0
+    for i in moving:
+        color = _AXIS_COLORS[i % len(_AXIS_COLORS)]
+        label = motion.axes[i]
+        if limit is not None and np.isfinite(limit[i]):
+            label += f"  (limit ±{limit[i]:g})"
+            if limit[i] <= _NEAR * largest:
+                for side in (-limit[i], limit[i]):
+                    axes.axhline(side, color=color, linewidth=0.9, dashes=(6, 3), alpha=0.7, zorder=1)
+        axes.plot(*envelope(motion.t, values[:, i], _BINS), color=color, linewidth=0.9, label=label)
+    if moving:
+        axes.legend(loc="upper left", bbox_to_anchor=(0.2, 1.13), ncols=min(len(moving), 5), fontsize=8)
