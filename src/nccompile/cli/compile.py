@@ -20,7 +20,6 @@ from nccompile.cli.options import (
     TimeLawOption,
     Verify,
 )
-from nccompile.errors import UsageError
 
 if TYPE_CHECKING:
     from nccompile.backend.ncq import Meta
@@ -49,29 +48,20 @@ def compile_program(
     ] = None,
 ) -> None:
     """Compile a part program to an OutQueue; a program with errors leaves no file."""
-    from nccompile.cli.inputs import ProgramOptions, finish, machine_of, read_program
+    from nccompile.cli.inputs import ProgramOptions, finish, machine_of, output_of, read_program
     from nccompile.toolchain import Compilation
 
-    place = _output(program, output)
+    source = read_program(program)
+    place = output_of(program, output, ".ncq")
     settings = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify)
     options = settings.resolve(machine_of(machine))
-    compilation = Compilation(read_program(program), options)
+    compilation = Compilation(source, options)
     meta = compilation.write(place)
     if report is not None:
         _write_report(report, compilation, meta, place)
     finish(compilation, diagnostics)
     assert meta is not None
     print(_summary(meta, compilation, place))
-
-
-def _output(program: Path, output: Path | None) -> Path:
-    if output is not None:
-        return output
-    if str(program) == "-":
-        raise UsageError("name the OutQueue with -o when the program comes from standard input")
-    if program.suffix.lower() == ".ncq":
-        raise UsageError(f"{program} is an OutQueue, not a part program: it was compiled already")
-    return program.with_suffix(".ncq")
 
 
 def _summary(meta: Meta, compilation: Compilation, place: Path) -> str:

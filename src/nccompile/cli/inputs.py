@@ -28,6 +28,7 @@ __all__ = [
     "is_queue",
     "machine_of",
     "open_job",
+    "output_of",
     "read_program",
     "read_queue",
 ]
@@ -50,13 +51,12 @@ class ProgramOptions:
 
     def resolve(self, machine: Machine) -> Options:
         """The options of a compilation; raises UsageError."""
-        jumps = {} if self.max_jumps is None else {"max_jumps": self.max_jumps}
         decoder = DecodeOptions(
             start=parse_start(self.start),
             defines=parse_defines(self.define),
             skip_blocks=self.skip_blocks,
             max_switches=machine.path.max_switches,
-            **jumps,
+            max_jumps=DecodeOptions.max_jumps if self.max_jumps is None else self.max_jumps,
         )
         return Options(machine, decoder, self.angle_tolerance, self.time_law, self.verify)
 
@@ -71,7 +71,7 @@ class Job:
     """A planned path ready to be run, sampled or drawn.
 
     name: of its file;  time_law: it was planned for;  chunks: the path from its start, each time it is called;
-    job_time [s];  segments: how many.
+    job_time [s];  segments: how many;  machine, machine_sha256: those it was planned for.
     """
 
     name: str
@@ -80,6 +80,8 @@ class Job:
     chunks: Callable[[], Iterator[Toolpath]]
     job_time: float
     segments: int
+    machine: str
+    machine_sha256: str
 
 
 def machine_of(file: Path | None) -> Machine:
@@ -128,13 +130,24 @@ def open_job(path: Path, machine: Machine, options: ProgramOptions, form: Report
         if options.given:
             raise UsageError(f"{path} is an OutQueue: {', '.join(options.given)} acts on programs only")
         queue = read_queue(path)
-        law = queue.meta.provenance.time_law
-        return Job(str(path), queue.axes, law, queue.chunks, queue.total.job_time, queue.total.segments)
+        totals, origin = queue.total, queue.meta.provenance
+        return _job(str(path), queue.axes, queue.chunks, totals.job_time, totals.segments, origin)
     compilation, held = compiled(path, machine, options, form, Compilation.planned)
     axes = held[0].axes if held else ("X", "Y", "Z")
     segments = sum(len(chunk) for chunk in held)
-    law = compilation.time_law
-    return Job(compilation.source.name, axes, law, lambda: iter(held), compilation.time.seconds, segments)
+    name, seconds = compilation.source.name, compilation.time.seconds
+    return _job(name, axes, lambda: iter(held), seconds, segments, compilation.provenance())
+
+
+def _job(
+    name: str,
+    axes: tuple[str, ...],
+    chunks: Callable[[], Iterator[Toolpath]],
+    job_time: float,
+    segments: int,
+    origin: ncq.Provenance,
+) -> Job:
+    return Job(name, axes, origin.time_law, chunks, job_time, segments, origin.machine, origin.machine_sha256)
 
 
 def compiled(
@@ -149,6 +162,18 @@ def compiled(
     held = list(stage(compilation))
     finish(compilation, form)
     return compilation, held
+
+
+def output_of(path: Path, output: Path | None, suffix: str) -> Path:
+    """The output file: as given, or named after the input; raises UsageError where that cannot be."""
+    if output is None and path == STDIN:
+        raise UsageError("name the output with -o when the program comes from standard input")
+    if output is None and not path.name:
+        raise UsageError(f"{path} cannot be read: Is a directory")
+    place = path.with_suffix(suffix) if output is None else output
+    if place.exists() and path.exists() and place.samefile(path):
+        raise UsageError(f"{place} is the input: name another output with -o")
+    return place
 
 
 def finish(compilation: Compilation, form: Report) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import ceil
 from pathlib import Path
 from typing import Annotated
 
@@ -24,6 +25,8 @@ from nccompile.errors import UsageError
 __all__ = ["plot"]
 
 SUFFIXES = (".png", ".svg", ".pdf")
+MOST_SAMPLES = 200_000
+"""Cycles that are drawn; a longer job is sampled more coarsely, as the picture has fewer columns anyway."""
 
 
 def plot(
@@ -42,4 +45,23 @@ def plot(
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
     """Draw the path, and velocity and acceleration over time."""
-    raise UsageError("plot is not wired yet")
+    from nccompile.backend.samples import sample
+    from nccompile.cli.inputs import ProgramOptions, machine_of, open_job, output_of
+    from nccompile.kernels import expect_work
+    from nccompile.machine.limits import limits
+    from nccompile.passes.velocity.settings import LAWS
+    from nccompile.view.motion import gather
+    from nccompile.view.plot import save
+
+    place = output_of(path, output, ".png")
+    if place.suffix.lower() not in SUFFIXES:
+        raise UsageError(f"{place}: pictures are written as {', '.join(SUFFIXES)}")
+    axes_of = machine_of(machine)
+    options = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law)
+    job = open_job(path, axes_of, options, diagnostics)
+    cycle = axes_of.cycle * max(1, ceil(job.job_time / axes_of.cycle / MOST_SAMPLES))
+    expect_work(int(job.job_time / cycle))
+    motion = gather(job.axes, sample(job.chunks(), cycle, LAWS[job.time_law]))
+    title = f"{job.name}: {job.segments} segments, {job.job_time:.3f} s"
+    save(place, job.chunks(), motion, limits(axes_of, job.axes), title=title)
+    print(f"{place}: path, and velocity and acceleration over {job.job_time:.3f} s")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -75,10 +76,14 @@ def run_program(
     from nccompile.cli.run_report import finish_run, report_lines
     from nccompile.runtime.task import CyclicTask
     from nccompile.runtime.trace import open_trace
+    from nccompile.toolchain import machine_digest
 
-    axes = _with_cycle(machine_of(machine), cycle_us)
+    axes = machine_of(machine)
     options = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law)
     job = open_job(path, axes, options, diagnostics)
+    if job.machine_sha256 != machine_digest(axes):
+        print(f"note: {path} was planned for {job.machine}, it runs on {axes.name}", file=sys.stderr)
+    axes = _with_cycle(axes, cycle_us)
     with open_trace(trace) if trace is not None else nullcontext() as sink:
         task = CyclicTask(job.chunks(), axes, _options(job, realtime, override, m_delay, at), trace=sink)
         result = task.run()
