@@ -29,9 +29,9 @@ class Row(NamedTuple):
 class ChunkBuilder:
     """Rows of a growing toolpath.
 
-    Rows are numbered through the whole path.  The last drive segment (`last_drive`) and what follows it stay
-    here until the next one comes, because a stop mark or the shape of a spline piece may still change them;
-    all before that leaves in chunks of exactly `size` rows, whatever the program.
+    Rows are numbered through the whole path.  The last drive segment (`last_drive`) may still get a stop mark,
+    and the last spline piece (`unshaped`) its curve; these and what follows them stay here, all before leaves
+    in chunks of exactly `size` rows, whatever the program.
     """
 
     def __init__(self, axes: tuple[str, ...], start: list[float], size: int) -> None:
@@ -39,6 +39,7 @@ class ChunkBuilder:
         self.start = start
         self.size = size
         self.last_drive: int | None = None
+        self.unshaped: int | None = None
         self._first = 0
         self._rows: list[Row] = []
         self._targets: list[list[float]] = []
@@ -61,8 +62,9 @@ class ChunkBuilder:
         return number
 
     def bend(self, number: int, curve: Curve, length: float) -> None:
-        """Gives the last drive segment its curve and path length [mm]."""
+        """Gives the unshaped segment its curve and path length [mm]."""
         at = number - self._first
+        self.unshaped = None
         self._rows[at] = self._rows[at]._replace(length=length)
         self._curves[number] = curve
 
@@ -85,7 +87,8 @@ class ChunkBuilder:
 
     def ready(self) -> Iterator[Toolpath]:
         """The full chunks that nothing can change any more."""
-        fixed = len(self._rows) if self.last_drive is None else self.last_drive - self._first
+        held = [number for number in (self.last_drive, self.unshaped) if number is not None]
+        fixed = min(held, default=len(self)) - self._first
         while fixed >= self.size:
             yield self._chunk(self.size)
             fixed -= self.size

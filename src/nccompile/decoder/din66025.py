@@ -22,13 +22,17 @@ __all__ = ["Din66025", "axes_of"]
 _MOST_M = 65535
 """Greatest M number: the interpolator shows it as an IEC WORD (SoftMotion §6.2.8, wM)."""
 
-_AXIS_WORD = re.compile(r"\([^()\n\r]*\)|^[ \t]*%[^\n\r]*|([ABCPQUVWabcpquvw])[-+.0-9$]", re.MULTILINE)
+_AXIS_WORD = re.compile(
+    r"\([^()\n\r]*\)|^[ \t]*%[^\n\r]*|([ABCPQUVWabcpquvw])(?=[-+.0-9$])|\$[^$\n\r]*\$", re.MULTILINE
+)
 _JUMP = re.compile(r"[Gg](?:0*20(?![0-9])|\$)")
 
 
 def axes_of(text: str, options: DecodeOptions) -> tuple[str, ...]:
     """The axes of a program: X Y Z, and those of the others that it or the start position names."""
-    named = {letter.upper() for letter in _AXIS_WORD.findall(text)} | {key.upper() for key in options.start}
+    named = {letter.upper() for letter in _AXIS_WORD.findall(text) if letter} | {
+        key.upper() for key in options.start
+    }
     return tuple(letter for letter in AXIS_LETTERS if letter in "XYZ" or letter in named)
 
 

@@ -56,6 +56,7 @@ class SplineRun:
         else:
             tangent = _unit(modal.leaving)
         row = self._core.add(Kind.POLYNOMIAL, target, 0.0, statement.line)
+        self._core.path.unshaped = row
         self._open = _Piece(row, statement, before, begin, end, tangent, dz)
         return row
 

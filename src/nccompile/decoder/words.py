@@ -81,6 +81,7 @@ def evaluate(core: Core, block: Block) -> Statement | None:
     statement = Statement(block)
     values = statement.values
     collected: list[tuple[Word, float]] = []
+    repeated: set[str] = set()
     sound = True
     for word in reversed(block.words):
         letter = word.letter
@@ -105,8 +106,10 @@ def evaluate(core: Core, block: Block) -> Statement | None:
             collected.append((word, value))
         else:
             if letter in values:
-                _repeated(core, statement, letter)
+                repeated.add(letter)
             values[letter] = value
+    for letter in sorted(repeated):
+        _repeated(core, statement, letter)
     if collected and not _sort(core, statement, collected):
         sound = False
     return statement if sound and _check(core, statement) else None

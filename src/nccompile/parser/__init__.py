@@ -46,14 +46,14 @@ def parse(source: Source, diagnostics: Diagnostics) -> Iterator[Block]:
         if isinstance(node, Header):
             if not reader.header(node, any_block):
                 return
-        elif reader.unreadable >= MAX_UNREADABLE:
-            reader.give_up(node)
-            return
         elif node.words or node.number or node.comments or not node.sound:
             if not any_block and (node.words or node.number):
                 reader.started(node)
             any_block = any_block or bool(node.words or node.number or not node.sound)
             yield node
+            if reader.unreadable >= MAX_UNREADABLE:
+                reader.give_up(node)
+                return
     if not any_block:
         diagnostics.report(
             "NC012", Severity.ERROR, "there is no program in this file: it has no block", source, Span(1, 1, 1),
