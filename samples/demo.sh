@@ -13,6 +13,6 @@ step() {
 step compile samples/bracket.nc -m samples/mill3.toml -o "$out/bracket.ncq"
 step info "$out/bracket.ncq"
 step run "$out/bracket.ncq" -m samples/mill3.toml --trace "$out/bracket.csv"
-step plot "$out/bracket.ncq" -o "$out/bracket.png"
+step plot "$out/bracket.ncq" -m samples/mill3.toml -o "$out/bracket.png"
 echo
 echo "The picture is in $out/bracket.png, the set and actual positions of every cycle are in $out/bracket.csv."

@@ -61,3 +61,9 @@ class Source:
     def line(self, number: int) -> str:
         """The text of line `number` (from 1); empty outside the file."""
         return self.lines[number - 1] if 1 <= number <= len(self.lines) else ""
+
+    def text_span(self, number: int) -> Span:
+        """The text of line `number` without the blanks around it."""
+        text = self.line(number)
+        first = len(text) - len(text.lstrip()) + 1
+        return Span(number, first, max(first + 1, len(text.rstrip()) + 1))

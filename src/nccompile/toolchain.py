@@ -1,6 +1,6 @@
 """The stages in plain order, from program text to OutQueue; reading this file is reading the product.
 
-    source -> decode -> check_axes, check_travel -> plan -> write | run | sample | plot
+    source -> decode -> check_marks, check_axes, check_travel -> plan -> write | run | sample | plot
 
 Every stage is a generator over chunks: a program of any length passes through in bounded memory, and
 whoever pulls at the end (a file, a cyclic task, a plot) drives the ones before it.  Findings in the user's
@@ -20,6 +20,7 @@ from nccompile.decoder import Decoded, DecodeOptions, decode
 from nccompile.diagnostics import Diagnostics
 from nccompile.machine.limits import check_axes, check_travel
 from nccompile.machine.model import Machine
+from nccompile.passes.check_marks import check_marks
 from nccompile.passes.velocity import PlanSettings, plan, row_times
 from nccompile.source import Source
 from nccompile.toolpath import Toolpath
@@ -124,7 +125,7 @@ class Compilation:
         return verify_chain(chunks) if self.options.verify else iter(chunks)
 
     def _checked(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
-        for chunk in chunks:
+        for chunk in check_marks(chunks, self.source, self.diagnostics):
             check_axes(chunk, self.options.machine, self.source, self.diagnostics)
             check_travel(chunk, self.options.machine, self.source, self.diagnostics)
             yield chunk

@@ -68,7 +68,7 @@ def _summary(meta: Meta, compilation: Compilation, place: Path) -> str:
     totals = meta.totals
     warnings = sum(compilation.diagnostics.counts.values())
     return (
-        f"{place}: {totals.segments} segments, {totals.length:.3f} mm, job time {totals.job_time:.3f} s"
+        f"{place}: {totals.segments} segment{'s' * (totals.segments != 1)}, {totals.length:.3f} mm, job time {totals.job_time:.3f} s"
         + (f", {warnings} warning{'s' * (warnings != 1)}" if warnings else "")
     )
 

@@ -16,6 +16,11 @@ __all__ = ["finish_run", "report_lines"]
 SHOWN = 6
 """Events of a kind that the table lists; all of them are in the JSON report and the trace."""
 
+_HEADING = (
+    f"{'axis':<4} {'peak velocity':>17} {'of limit':>8} {'peak acceleration':>22} {'of limit':>8} "
+    f"{'following error':>16} {'end position':>16}"
+)
+
 
 def report_lines(result: RunReport) -> Iterator[str]:
     """The lines of the table."""
@@ -24,7 +29,7 @@ def report_lines(result: RunReport) -> Iterator[str]:
         f"{result.cycles} cycles of {result.cycle * 1e6:.0f} us"
     )
     if result.axes:
-        yield "axis   peak velocity        of limit   peak acceleration     of limit   following error    end position"
+        yield _HEADING
     for axis in result.axes:
         yield _axis_line(axis)
     switches = result.switches
@@ -67,9 +72,9 @@ def finish_run(result: RunReport, form: Report) -> None:
 def _axis_line(axis: AxisReport) -> str:
     unit = axis.unit
     return (
-        f"{axis.axis:<4} {axis.peak_velocity:10.3f} {unit + '/s':<6} {axis.velocity_ratio:9.1%} "
-        f"{axis.peak_acceleration:14.1f} {unit + '/s2':<7} {axis.acceleration_ratio:9.1%} "
-        f"{axis.max_following_error:12.6f} {unit:<3} {axis.end_position:12.6f} {unit}"
+        f"{axis.axis:<4} {f'{axis.peak_velocity:.3f} {unit}/s':>17} {axis.velocity_ratio:>8.1%} "
+        f"{f'{axis.peak_acceleration:.1f} {unit}/s2':>22} {axis.acceleration_ratio:>8.1%} "
+        f"{f'{axis.max_following_error:.4f} {unit}':>16} {f'{axis.end_position:.4f} {unit}':>16}"
     )
 
 

@@ -78,7 +78,7 @@ def _cubic_extremes(c: Floats) -> Floats:
     this form of the quadratic formula does not cancel.
     """
     a, b = 3.0 * c[:, 3], c[:, 2]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         q = -(b + np.copysign(np.sqrt(b * b - a * c[:, 1]), b))
         roots = np.column_stack([q / a, c[:, 1] / q])
         inside = (roots >= 0.0) & (roots <= 1.0)

@@ -14,7 +14,7 @@ import numpy as np
 from nccompile.diagnostics import Diagnostics, Severity
 from nccompile.machine.extents import extents
 from nccompile.machine.model import Machine
-from nccompile.source import Source, Span
+from nccompile.source import Source
 from nccompile.toolpath.columns import AXIS_LETTERS, Floats, Toolpath
 
 __all__ = ["AxisLimits", "check_axes", "check_travel", "limits", "missing_axes", "offsets", "travel"]
@@ -76,7 +76,7 @@ def check_axes(chunk: Toolpath, machine: Machine, source: Source, diagnostics: D
                 Severity.ERROR,
                 f"the machine {machine.name} has no axis {letter}",
                 source,
-                _whole_line(source, int(chunk.line[moving[0]])),
+                source.text_span(int(chunk.line[moving[0]])),
                 f"it has {' '.join(machine.axes)}; choose another machine file or leave the axis out",
             )
 
@@ -111,14 +111,7 @@ def check_travel(chunk: Toolpath, machine: Machine, source: Source, diagnostics:
             Severity.ERROR,
             f"axis {letter} reaches {reached:.6g} {axis.unit}, beyond its {bound} of {limit:g} {axis.unit}",
             source,
-            _whole_line(source, int(chunk.line[row])),
+            source.text_span(int(chunk.line[row])),
             f"the travel of {letter} on {machine.name} is {low[column]:g} to {high[column]:g} {axis.unit}"
             + (f", path coordinates are {shift[column]:g} {axis.unit} less" if shift[column] else ""),
         )
-
-
-def _whole_line(source: Source, line: int) -> Span:
-    """The text of a line without the blanks around it."""
-    text = source.line(line)
-    first = len(text) - len(text.lstrip()) + 1
-    return Span(line, first, max(first + 1, len(text.rstrip()) + 1))
