@@ -99,7 +99,7 @@ def test_header(text: str, name: str | None) -> None:
 
 
 def test_a_last_percent_warns_and_a_second_program_is_an_error() -> None:
-    for text, errors in (("% a\nN10 X1\n%\n\n", 0), ("% a\nN10 X1\n% b\nN10 X2", 1)):
+    for text, errors in (("% a\nN10 X1\n%\n (end)\n\x1a", 0), ("% a\nN10 X1\n% b\nN10 X2", 1)):
         diagnostics = Diagnostics()
         blocks = list(parse(Source("a.nc", text), diagnostics))
         assert len(blocks) == 1

@@ -25,6 +25,7 @@ MAX_LINE = 65_536
 MAX_UNREADABLE = 1000
 """Lines without sense after which reading stops: this is no part program."""
 
+_COMMENTS = re.compile(r"\([^()]*\)")
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _NUMBER_FIRST = re.compile(r"[ \t/]*([Nn])([0-9]+)(?![0-9.])")
 
@@ -140,7 +141,7 @@ class _Reader:
             self.seen_header = True
             return True
         rest = self.source.lines[header.line :]
-        if any(line.strip() for line in rest):
+        if any(_COMMENTS.sub("", line).strip("\x1a \t\f\v") for line in rest):
             self.report(header.line, Fault(
                 "NC008", "a second program starts here", header.column - 1, header.end - 1,
                 "keep one program a file; what follows is not read",
