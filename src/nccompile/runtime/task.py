@@ -176,7 +176,8 @@ class CyclicTask:
 
     def _cycles_at_once(self) -> int:
         """Cycles until something has to be looked at: a command, an acknowledge; one in real time."""
-        if self._clock is not None or self._is_starved:
+        acknowledging = self._m is not None and self.interpolator.inputs.ack_m
+        if self._clock is not None or self._is_starved or acknowledging:
             return 1
         n = min(self.options.burst, BURST)
         due = self._schedule.cycles_until_next(self.output.now, self.machine.cycle)
