@@ -1,0 +1,1 @@
+"""Importers: what is no part program (drawings, cam tables) becomes toolpaths and cam profiles."""
