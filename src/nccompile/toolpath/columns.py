@@ -11,20 +11,23 @@ gap.  Units: mm, mm/s, mm/s², radians inside the curve table; rotary axes (A, B
     curves    rows for segments that are not straight, found by the column `curve`
     events    switch points, M functions and dwells, keyed by the segment's row in this chunk
 
-Path length (SoftMotion §6.2.8, docs/decisions/003): the length in X-Y-Z space; for a helix that of the
+Path length (SoftMotion §6.2.8, docs/decisions/040): the length in X-Y-Z space; for a helix that of the
 curve in its plane and the linear third axis together.  A segment that moves only additional axes is as long
 as their Euclidean distance, so its feed is theirs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum, IntFlag
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from nccompile.toolpath.views import Segment
 
 __all__ = [
     "ADDITIONAL",
@@ -206,6 +209,15 @@ class Toolpath:
 
     def __len__(self) -> int:
         return len(self.kind)
+
+    def __getitem__(self, i: int) -> Segment:
+        """The typed read-only view of row i (`toolpath.views`)."""
+        from nccompile.toolpath.views import view  # noqa: PLC0415 - views import this module
+
+        return view(self, i)
+
+    def __iter__(self) -> Iterator[Segment]:
+        return (self[i] for i in range(len(self)))
 
     @property
     def is_planned(self) -> bool:

@@ -7,7 +7,7 @@
 
 An axis in the S-profile (SoftMotion §6.2.8) follows the others and does not count, unless nothing else
 moves.
-G92, dwells and M functions have length 0.  See docs/decisions/003.
+G92, dwells and M functions have length 0.  See docs/decisions/040.
 
 `path_length` (one segment) and `path_lengths`, `straight_lengths` (columns) give the same bits.
 """

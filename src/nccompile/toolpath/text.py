@@ -9,6 +9,8 @@
     arc 10.0 10.0 0.0 length 15.7 feed 20.0 source 4 xy center 10.0 5.0 radius 5.0 start -1.57 sweep 3.14
     m_function 10.0 10.0 0.0 source 5
       m 10 k 1.5 o 0
+    dwell 10.0 10.0 0.0 source 6
+      wait 0 k 0.5
 
 A row starts with the kind and the end position; then pairs of a word and its value follow, where what is left
 out is 0.  `names` are numbered from 0 in the order of their lines, which stand before the rows that use them;
@@ -33,7 +35,7 @@ __all__ = ["format_toolpath", "format_toolpaths", "parse_toolpath"]
 
 _KINDS = {kind.name.lower(): kind for kind in Kind}
 _PLANES = {plane.name.lower(): plane for plane in Plane}
-_EVENTS = {"switch": EventKind.SWITCH, "m": EventKind.M_FUNCTION, "dwell": EventKind.DWELL}
+_EVENTS = {"switch": EventKind.SWITCH, "m": EventKind.M_FUNCTION, "wait": EventKind.DWELL}
 _EVENT_WORDS = {kind: word for word, kind in _EVENTS.items()}
 
 _REALS = ("length", "feed", "accel", "decel", "radius")

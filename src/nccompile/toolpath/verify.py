@@ -259,7 +259,9 @@ def _check_lengths(chunk: Toolpath) -> None:
     off = ~(np.abs(chunk.length - length) <= LENGTH_RATIO * length)
     if off.any():
         at = int(np.argmax(off))
-        _forbid(chunk, off, f"length {chunk.length[at]!r} mm, the geometry's is {length[at]!r} mm")
+        _forbid(
+            chunk, off, f"length {float(chunk.length[at])!r} mm, the geometry's is {float(length[at])!r} mm"
+        )
 
 
 def _check_events(chunk: Toolpath) -> None:

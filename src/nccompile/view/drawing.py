@@ -128,7 +128,8 @@ def _point_counts(chunk: Toolpath) -> npt.NDArray[np.intp]:
 
 
 def _sampled(chunk: Toolpath, starts: Floats, rows: npt.NDArray[np.intp], count: int) -> Floats:
-    """Shape (m, count - 1, 3): inner points of curves; the third axis is linear in the sampled length."""
+    """Shape (m, count - 1, 3): inner points of curves; the third axis is drawn linear in the length,
+    in the S-profile too."""
     table = chunk.curve[rows]
     planes = chunk.curves.plane[table]
     flat = sample_curves(chunk.kind[rows], chunk.curves.parameters[table], np.linspace(0.0, 1.0, count + 1))
