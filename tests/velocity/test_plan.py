@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import isclose, pi, radians, sqrt
 
 import numpy as np
@@ -153,7 +154,7 @@ def test_a_window_too_small_for_the_braking_distance_is_slower_but_safe() -> Non
     for _ in range(400):
         build.line(0.5, 0.0, 300, 2000, 50)
     path = build.path()
-    narrow = Planner(generic(), window=20)
+    narrow = Planner(replace(generic(), window=20))
     chunks: list[Toolpath] = []
     for chunk in cut(path, 5):
         chunks += narrow.feed(chunk)

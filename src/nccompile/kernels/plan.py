@@ -1,4 +1,4 @@
-"""Velocity planning over rows of segments: limits, junctions, look-ahead, durations.
+"""Velocity planning over rows of segments: limits, look-ahead, durations; `kernels.corners` has the junctions.
 
 Every function is a loop over the rows of a window; `passes.velocity` holds the window.  A segment moves along
 q(s), s the path length; with v = ds/dt an axis has velocity q' v and acceleration q' a + q'' v².
@@ -15,7 +15,7 @@ from nccompile.kernels import kernel
 from nccompile.kernels.curves import derivative, derivative3, max_curvature
 from nccompile.kernels.timelaw import law_times
 
-__all__ = ["durations", "junctions", "look_ahead", "row_limits"]
+__all__ = ["durations", "look_ahead", "row_limits"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -26,7 +26,6 @@ _SPACE = 3
 
 _S_SLOPE = 1.875  # greatest slope of 10 w³ - 15 w⁴ + 6 w⁵
 _S_BEND = 5.773502691896258  # greatest second derivative of it, 10 / sqrt(3)
-_SAME_SLOPE = 1e-9  # slopes that differ by less are tangent: rounding of directions, not a corner
 
 _TANGENTIAL = 0.6  # on curves: share of an axis's acceleration for changing the path velocity;
 #                    0.8 is left for following the curve, since 0.6² + 0.8² = 1 and both are at right angles
@@ -134,93 +133,18 @@ def row_limits(
 
 
 @kernel
-def _corner_velocity(
-    t_end: Floats, t_start: Floats, i: int, j: int, steps: Floats, chord: float, shorter: float, span: float,
-    cycle: float,
-) -> float:  # fmt: skip
-    """The velocity limit of the junction of rows i and j.
-
-    Bend above the angle tolerance: 0.  It is the angle between the X-Y-Z directions, taken as the chord
-    2 sin(angle / 2) of the unit vectors, exact also for tiny angles; between a segment that moves X, Y, Z
-    and one that does not there is no direction to compare: 0.
-
-    Below it, no axis may jump by more than its velocity step within one cycle T, whether by one corner or by
-    many short chords.  With D = |q'_j - q'_i| of the axis and a step of size w, either of these is enough:
-
-        one corner a cycle    v D <= w   and   v T <= the shorter of both segments
-        many a cycle          v D <= w / 3   and   v² D T <= w span / 3,   span: half of both segments
-    """
-    axes = t_end.shape[1]
-    first = min(3, axes)
-    size_i = size_j = 0.0
-    for a in range(first):
-        size_i += t_end[i, a] * t_end[i, a]
-        size_j += t_start[j, a] * t_start[j, a]
-    if (size_i > 0.0) != (size_j > 0.0):
-        return 0.0
-    low = 0
-    high = first
-    if size_i == 0.0:
-        low = first
-        high = axes
-        for a in range(low, high):
-            size_i += t_end[i, a] * t_end[i, a]
-            size_j += t_start[j, a] * t_start[j, a]
-        if size_i == 0.0 or size_j == 0.0:
-            return 0.0
-    size_i = sqrt(size_i)
-    size_j = sqrt(size_j)
-    bend2 = 0.0
-    for a in range(low, high):
-        d = t_end[i, a] / size_i - t_start[j, a] / size_j
-        bend2 += d * d
-    if bend2 > chord * chord:
-        return 0.0
-    v = inf
-    for a in range(axes):
-        jump = abs(t_end[i, a] - t_start[j, a])
-        if jump > _SAME_SLOPE and steps[a] < inf:
-            alone = min(steps[a] / jump, shorter / cycle)
-            many = min(steps[a] / (3.0 * jump), sqrt(steps[a] * span / (3.0 * cycle * jump)))
-            v = min(v, max(alone, many))
-    return v
-
-
-@kernel
-def junctions(
-    kind: Kinds, length: Floats, v_limit: Floats, t_start: Floats, t_end: Floats, steps: Floats, chord: float,
-    cycle: float, v_junction: Floats,
-) -> int:  # fmt: skip
-    """Writes to v_junction (n,) what the junction after each row allows; 0 after the last row.
-
-    Positionings, jumps, dwells and M functions stop before and after; rows without length do not count: the
-    junction is between their neighbours and the rows themselves take its limit.  Returns the number of leading
-    rows whose junction is known: the last row that moves waits for the next one.
-    """
-    n = len(kind)
-    last = -1  # latest row that moves
-    for j in range(n):
-        v_junction[j] = 0.0
-        if kind[j] >= _SET_POSITION:
-            last = -1
-            continue
-        if length[j] <= 0.0:
-            continue
-        if last >= 0 and kind[last] != _POSITIONING and kind[j] != _POSITIONING:
-            shorter = min(float(length[last]), float(length[j]))
-            span = 0.5 * (float(length[last]) + float(length[j]))
-            v = _corner_velocity(t_end, t_start, last, j, steps, chord, shorter, span, cycle)
-            v = min(v, float(v_limit[last]), float(v_limit[j]))
-            for row in range(last, j):
-                v_junction[row] = v
-        last = j
-    return last if last >= 0 else n
+def _rest_within(length: Floats, decel: Floats, first: int, last: int) -> float:
+    """v² from which rows first..last brake to rest: the sum of 2 d L."""
+    total = 0.0
+    for j in range(first, last + 1):
+        total += 2.0 * decel[j] * length[j]
+    return total
 
 
 @kernel
 def look_ahead(
     kind: Kinds, length: Floats, feed: Floats, v_limit: Floats, v_junction: Floats, accel: Floats, decel: Floats,
-    v_before: float, known: int, complete: int, v_end: Floats,
+    v_before: float, known: int, complete: int, window: int, v_end: Floats,
 ) -> int:  # fmt: skip
     """Writes the end velocities of a window and returns how many leading rows no later row can change.
 
@@ -228,21 +152,33 @@ def look_ahead(
         forward    v_end[j] <= sqrt(v_end[j-1]² + 2 a L) with a, L of row j: it can be reached
 
     cap[j] is the junction's limit and the lower of both commanded velocities min(feed, v_limit).  The path
-    after the window is unknown, so its last row ends at 0; from the last row whose cap, not the braking,
+    after the rows at hand is unknown, so the last one ends at 0; from the last row whose cap, not the braking,
     decides, nothing before depends on what follows.  It must be one of the `known` junctions, and not be in the
     middle of rows without length, which share one.  v_before: velocity before row 0.
+
+    window > 0: every row is planned as if the path ended at rest `window` rows after it, which is one more cap:
+    v_end[j]² <= sum of 2 d L of rows j+1..j+window.  So a larger window is never slower, and rows with
+    `window` known rows behind them are settled too.
     """
     n = len(length)
     settled = n if complete == 1 else 0
     after = 0.0
+    ahead = 0.0  # sum of 2 d L of the next `window` rows, to rounding
     for j in range(n - 1, -1, -1):
         cap = 0.0
         brake = 0.0
         if j + 1 < n:
             cap = min(v_junction[j], feed[j], v_limit[j], feed[j + 1], v_limit[j + 1])
+            if window > 0:
+                ahead += 2.0 * decel[j + 1] * length[j + 1]
+                if j + 1 + window < n:
+                    ahead -= 2.0 * decel[j + 1 + window] * length[j + 1 + window]
+                    if cap * cap > 0.999 * ahead:
+                        cap = min(cap, sqrt(_rest_within(length, decel, j + 1, j + window)))
             brake = sqrt(after * after + 2.0 * decel[j + 1] * length[j + 1]) if length[j + 1] > 0.0 else after
             whole = length[j + 1] > 0.0 or kind[j + 1] >= _SET_POSITION
-            if cap <= brake and settled == 0 and j < known and whole:
+            settles = cap <= brake or (window > 0 and j + window < known)
+            if settles and settled == 0 and j < known and whole:
                 settled = j + 1
         after = min(cap, brake)
         v_end[j] = after

@@ -4,7 +4,9 @@ settings    what the planner needs to know of machine, program defaults and opti
 planner     the pass itself: a window over the chunks
 """
 
-from nccompile.passes.velocity.planner import WINDOW, Planner, plan, row_times
-from nccompile.passes.velocity.settings import PlanSettings
+from nccompile.passes.velocity.planner import Planner, plan, row_times
+from nccompile.passes.velocity.settings import LAWS, LOOK_AHEAD, PLANNERS, SOFTMOTION, WINDOW, PlanSettings
 
-__all__ = ["WINDOW", "PlanSettings", "Planner", "plan", "row_times"]
+__all__ = [
+    "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "WINDOW", "PlanSettings", "Planner", "plan", "row_times",
+]  # fmt: skip

@@ -7,7 +7,8 @@ Rules, in this order; each can only lower what the ones before allow:
 
     1. junction = 0 next to positionings, stops, and where the path bends by more than the angle tolerance;
        otherwise the lower commanded velocity of both segments (the manual's rule)
-    2. the machine: axis velocity, acceleration also on curves, and the velocity step at a junction
+    2. the machine: axis velocity, acceleration also on curves, the velocity step at a junction, and, if given,
+       the junction deviation; not with the planner `softmotion`, which knows the manual's rules only
     3. look-ahead: no velocity that cannot be braked (deceleration) or reached (acceleration) in time
 
 Look-ahead runs on a window and passes on only rows that no later row can change, so the result is that of
@@ -29,15 +30,15 @@ from math import sin
 import numpy as np
 
 from nccompile.kernels import plan as kernels
+from nccompile.kernels.corners import junctions
 from nccompile.kernels.timelaw import peak_factor
 from nccompile.passes.velocity.settings import PlanSettings
 from nccompile.toolpath.columns import EventKind, Floats, Kind, Toolpath
 
-__all__ = ["WINDOW", "Planner", "plan", "row_times"]
+__all__ = ["Planner", "plan", "row_times"]
 
-WINDOW = 30_000
-"""Rows the window may hold unsettled (as many blocks as INTERP looks ahead, §1.7); a longer braking distance
-is cut there: the velocity is lower than it could be, never higher."""
+_UNLIMITED = 1e6
+"""v_limit of segments that nothing but their feed limits [mm/s]: the greatest velocity a machine may have."""
 
 
 def plan(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpath]:
@@ -53,7 +54,6 @@ class Planner:
     """The window of `plan` for callers who push chunks themselves."""
 
     settings: PlanSettings
-    window: int = WINDOW
     _pending: Toolpath | None = field(default=None, init=False)
     _v_before: float = field(default=0.0, init=False)
 
@@ -71,9 +71,6 @@ class Planner:
     def _settle(self, *, complete: bool) -> Iterator[Toolpath]:
         assert self._pending is not None
         planned, settled = plan_window(self._pending, self.settings, self._v_before, complete=complete)
-        if not complete and settled == 0 and len(planned) > self.window:
-            moving = np.flatnonzero(planned.length[: len(planned) - self.window // 2 + 1] > 0.0)
-            settled = int(moving[-1]) if len(moving) else 0
         if settled == 0:
             return
         done = planned.rows(0, settled)
@@ -93,28 +90,23 @@ def plan_window(
     decel = np.where(window.decel > 0.0, window.decel, settings.decel)
     v_limit, v_junction, v_end = np.empty(n), np.empty(n), np.empty(n)
     t_start, t_end = np.empty_like(window.target), np.empty_like(window.target)
-    axis = settings.limits
+    axis = settings.planned_limits
     kernels.row_limits(
         window.kind, window.starts(), window.target, window.curve, window.curves.plane,
         window.curves.parameters, window.length, window.profile, axis.velocity, axis.acceleration, axis.rapid,
         peak_factor(settings.law), feed, accel, decel, v_limit, t_start, t_end,
     )  # fmt: skip
-    v_limit = np.where(np.isfinite(v_limit), v_limit, feed)
+    v_limit = np.where(np.isfinite(v_limit), v_limit, np.maximum(feed, _UNLIMITED))
     chord = 2.0 * sin(0.5 * settings.angle_tolerance)
-    known = kernels.junctions(
-        window.kind,
-        window.length,
-        v_limit,
-        t_start,
-        t_end,
-        axis.velocity_step,
-        chord,
-        settings.cycle,
-        v_junction,
-    )
+    known = junctions(
+        window.kind, window.length, v_limit, np.minimum(accel, decel), t_start, t_end, axis.acceleration,
+        axis.velocity_step, chord, settings.cycle, settings.rule, settings.junction_deviation or 0.0,
+        int(settings.rapid_stops), v_junction,
+    )  # fmt: skip
     settled = kernels.look_ahead(
-        window.kind, window.length, feed, v_limit, v_junction, accel, decel, v_before, known, int(complete), v_end
-    )
+        window.kind, window.length, feed, v_limit, v_junction, accel, decel, v_before, known, int(complete),
+        settings.window or 0, v_end,
+    )  # fmt: skip
     planned = window.replace(
         feed=feed, accel=accel, decel=decel, v_limit=v_limit, v_junction=v_junction, v_end=v_end
     )

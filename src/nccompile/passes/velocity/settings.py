@@ -4,14 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import radians
+from math import inf, radians
 
+import numpy as np
+
+from nccompile.kernels.corners import NO_DEVIATION, PARABOLA
 from nccompile.kernels.timelaw import SIGMOID, TRAPEZOID
 from nccompile.machine.limits import AxisLimits, limits
 from nccompile.machine.model import Machine
 from nccompile.units import seconds_from_us
 
-__all__ = ["LAWS", "PlanSettings"]
+__all__ = ["LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "WINDOW", "PlanSettings"]
+
+SOFTMOTION = "softmotion"
+LOOK_AHEAD = "look-ahead"
+
+PLANNERS = (SOFTMOTION, LOOK_AHEAD)
+"""Planners by the name that command line and machine file use."""
+
+WINDOW = 30_000
+"""Rows that a row's end velocity may depend on (as many blocks as INTERP looks ahead, §1.7)."""
 
 LAWS = {"trapezoid": TRAPEZOID, "sigmoid": SIGMOID}
 """Time laws by the name that machine file, command line and queue use."""
@@ -22,7 +34,10 @@ class PlanSettings:
     """Settings of the velocity planner.
 
     feed [mm/s], accel, decel [mm/s²]: for segments where the program says nothing; angle_tolerance [rad];
-    cycle [s]: the time in which an axis velocity may jump by its step once; law: `LAWS`.
+    cycle [s]: the time in which an axis velocity may jump by its step once; law: `LAWS`; planner: `PLANNERS`;
+    window: rows looked ahead, None for all; junction_deviation [mm]: how far a corner may be cut by a drive
+    that does not jump, None for no such rule; junction_rule: PARABOLA, or CIRCLE as grbl and Klipper do;
+    rapid_stops: positionings stop at both ends (SoftMotion §3.2).
     """
 
     limits: AxisLimits
@@ -32,6 +47,24 @@ class PlanSettings:
     angle_tolerance: float
     cycle: float
     law: int
+    planner: str = LOOK_AHEAD
+    window: int | None = WINDOW
+    junction_deviation: float | None = None
+    junction_rule: int = PARABOLA
+    rapid_stops: bool = True
+
+    @property
+    def rule(self) -> int:
+        """The rule of the junction deviation in force, as the kernel takes it."""
+        return NO_DEVIATION if self.junction_deviation is None else self.junction_rule
+
+    @property
+    def planned_limits(self) -> AxisLimits:
+        """The limits that the planner respects: none of the axes' with the manual's rules."""
+        if self.planner != SOFTMOTION:
+            return self.limits
+        none = np.full(len(self.limits.velocity), inf)
+        return AxisLimits(none, none, none, none)
 
     @classmethod
     def from_machine(
@@ -41,6 +74,9 @@ class PlanSettings:
         *,
         angle_tolerance_deg: float | None = None,
         time_law: str | None = None,
+        planner: str | None = None,
+        window: int | None = WINDOW,
+        junction_deviation: float | None = None,
     ) -> PlanSettings:
         """The machine's settings, with options of the command line over them."""
         path = machine.path
@@ -53,4 +89,7 @@ class PlanSettings:
             angle_tolerance=radians(angle_deg),
             cycle=seconds_from_us(machine.cycle_us),
             law=LAWS[time_law or path.time_law],
+            planner=planner or LOOK_AHEAD,
+            window=window,
+            junction_deviation=junction_deviation,
         )
