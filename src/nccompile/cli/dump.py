@@ -83,7 +83,8 @@ def dump(
 def _chunks(
     path: Path, machine: Machine, options: ProgramOptions, stage: Stage | None, form: Report
 ) -> Iterable[Toolpath]:
-    from nccompile.cli.inputs import STDIN, compiled, is_queue, open_job
+    from nccompile.cli.inputs import compiled, open_job
+    from nccompile.cli.queues import STDIN, is_queue
     from nccompile.toolchain import Compilation
 
     if stage is not Stage.DECODED:

@@ -20,7 +20,7 @@ def info(
     as_json: Annotated[bool, typer.Option("--json", help="meta.json as it stands in the file.")] = False,
 ) -> None:
     """Print totals, source and machine of an OutQueue; the whole file is checked first."""
-    from nccompile.cli.inputs import read_queue
+    from nccompile.cli.queues import read_queue
 
     meta = read_queue(queue).meta
     if as_json:

@@ -11,6 +11,7 @@ import typer
 
 from nccompile.backend import ncq
 from nccompile.cli.options import Report, parse_defines, parse_start
+from nccompile.cli.queues import STDIN, is_queue, read_queue
 from nccompile.cli.report import report
 from nccompile.decoder import DecodeOptions
 from nccompile.errors import UsageError
@@ -20,21 +21,15 @@ from nccompile.toolchain import Compilation, Options
 from nccompile.toolpath import Toolpath
 
 __all__ = [
-    "STDIN",
     "Job",
     "ProgramOptions",
     "compiled",
     "finish",
-    "is_queue",
     "machine_of",
     "open_job",
     "output_of",
     "read_program",
-    "read_queue",
 ]
-
-STDIN = Path("-")
-_ZIP_STARTS = (b"PK\x03\x04", b"PK\x05\x06")
 
 
 @dataclass(frozen=True)
@@ -97,26 +92,6 @@ def read_program(path: Path) -> Source:
         raise UsageError(f"{path} is an OutQueue, not a part program: it was compiled already")
     try:
         return Source.read(path)
-    except OSError as error:
-        raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
-
-
-def read_queue(path: Path) -> ncq.Queue:
-    """The OutQueue at a path, checked from end to end; raises UsageError or QueueError."""
-    if not is_queue(path) and path.suffix.lower() != ".ncq" and path.is_file():
-        raise UsageError(f"{path} is not an OutQueue; compile it first: nccompile compile {path}")
-    return ncq.read(path).check()
-
-
-def is_queue(path: Path) -> bool:
-    """Whether a path is meant as an OutQueue: by its name or, whatever it is called, its first bytes."""
-    if path == STDIN:
-        return False
-    if path.suffix.lower() == ".ncq":
-        return True
-    try:
-        with path.open("rb") as file:
-            return file.read(4) in _ZIP_STARTS
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
 
