@@ -1,7 +1,7 @@
 """Part-program text to syntax tree; no meaning.
 
 `parse` reads block by block: a line that is no block gives one diagnostic, and the rest is still read.  The
-text is never read as a whole by Lark, so a later fast scanner can take the lines it knows in front of it.
+text is never read as a whole by Lark: `lines.read_line` takes the lines it knows in front of it.
 """
 
 from __future__ import annotations
@@ -9,25 +9,31 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from lark.exceptions import UnexpectedInput, UnexpectedToken
-
 from nccompile.diagnostics import Diagnostics, Severity
-from nccompile.parser.faults import Fault, explain
-from nccompile.parser.grammar import line_parser
+from nccompile.parser.faults import Fault
+from nccompile.parser.lines import MAX_LINE, ReadSource, Unread, read_line
 from nccompile.parser.tree import Block, Comment, Header, Value, Variable, Word
 from nccompile.source import Source, Span
 
-__all__ = ["MAX_LINE", "Block", "Comment", "Header", "Value", "Variable", "Word", "parse", "read_header"]
-
-MAX_LINE = 65_536
-"""Longest line that is read, in characters; no program that a person or a post-processor wrote has one."""
+__all__ = [
+    "MAX_LINE",
+    "Block",
+    "Comment",
+    "Header",
+    "ReadSource",
+    "Value",
+    "Variable",
+    "Word",
+    "parse",
+    "read_header",
+    "read_line",
+]
 
 MAX_UNREADABLE = 1000
 """Lines without sense after which reading stops: this is no part program."""
 
 _COMMENTS = re.compile(r"\([^()]*\)")
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
-_NUMBER_FIRST = re.compile(r"[ \t/]*([Nn])([0-9]+)(?![0-9.])")
 
 
 def parse(source: Source, diagnostics: Diagnostics) -> Iterator[Block]:
@@ -64,18 +70,14 @@ def parse(source: Source, diagnostics: Diagnostics) -> Iterator[Block]:
 
 def read_header(source: Source) -> Header | None:
     """The header line of a program; None if a block or anything else comes first."""
-    parser = line_parser()
     for line, text in enumerate(source.lines, 1):
         bare = text.strip()
         if not bare or (bare.startswith("(") and bare.endswith(")")):
             continue
         if not bare.startswith("%") or len(text) > MAX_LINE:
             return None
-        try:
-            node = parser.parse(text)
-        except UnexpectedInput:
-            return None
-        return node._replace(line=line) if isinstance(node, Header) else None
+        node = read_line(line, text)
+        return node if isinstance(node, Header) else None
     return None
 
 
@@ -85,33 +87,17 @@ class _Reader:
     def __init__(self, source: Source, diagnostics: Diagnostics) -> None:
         self.source = source
         self.diagnostics = diagnostics
-        self.parse = line_parser().parse
+        self.nodes = source.nodes if isinstance(source, ReadSource) else ()
         self.seen_header = False
         self.unreadable = 0
 
     def read(self, line: int, text: str) -> Block | Header | None:
         """The node of one line; None for an empty one."""
-        if len(text) > MAX_LINE:
-            self.report(line, Fault(
-                "NC011", f"the line has {len(text):,} characters, more than {MAX_LINE:,}", 0, MAX_LINE,
-                "put every block on a line of its own",
-            ))  # fmt: skip
-            return Block(line, 1, MAX_LINE, None, (), sound=False)
-        text = text.removesuffix("\x1a")  # the end-of-file mark of old systems
-        if not text or text.isspace():
-            return None
-        try:
-            node: Block | Header = self.parse(text)  # type: ignore[assignment]  # the transformer's result
-        except UnexpectedInput as stop:
-            at = stop.token.start_pos if isinstance(stop, UnexpectedToken) else stop.pos_in_stream
-            at = (
-                len(text)
-                if at is None or (isinstance(stop, UnexpectedToken) and stop.token.type == "$END")
-                else at
-            )
-            self.report(line, explain(text, at))
-            return _unsound(line, text)
-        return _placed(node, line)
+        node = self.nodes[line - 1] if self.nodes else read_line(line, text)
+        if isinstance(node, Unread):
+            self.report(line, node.fault)
+            return node.block
+        return node
 
     def report(self, line: int, fault: Fault) -> None:
         """Adds an error."""
@@ -173,31 +159,3 @@ def _is_binary(source: Source, diagnostics: Diagnostics) -> bool:
         "save the program as UTF-8" if wide else "",
     )  # fmt: skip
     return True
-
-
-def _placed(node: Block | Header, line: int) -> Block | Header:
-    """The node with its line number in every part."""
-    if line == 1 or isinstance(node, Header):
-        return node._replace(line=line)
-    number = node.number
-    return Block(
-        line,
-        node.column,
-        node.end,
-        None if number is None else number._replace(line=line),
-        tuple([Word(w[0], w[1], w[2], line, w[4]) for w in node.words]),
-        node.skip,
-        tuple([c._replace(line=line) for c in node.comments]) if node.comments else (),
-    )
-
-
-def _unsound(line: int, text: str) -> Block:
-    """The block of a line that could not be read, with its number so that jumps to it are not blamed too."""
-    first = len(text) - len(text.lstrip())
-    found = _NUMBER_FIRST.match(text)
-    number = None
-    if found is not None:
-        number = Word("N", float(found[2]), found[1] + found[2], line, found.start(1) + 1)
-    return Block(
-        line, first + 1, len(text.rstrip()) + 1, number, (), text.lstrip().startswith("/"), sound=False
-    )
