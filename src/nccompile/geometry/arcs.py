@@ -23,16 +23,16 @@ class Circle(NamedTuple):
 
 
 def arc_by_radius(x0: float, y0: float, x1: float, y1: float, radius: float, ccw: bool) -> Curve:
-    """The arc of at most 180° from (x0, y0) to (x1, y1) with the given radius.
+    r"""The arc of at most 180° from (x0, y0) to (x1, y1) with the given radius.
 
                   E                  C = M + h n        M: middle of the chord S-E,  d = |SE|
                 / |                  h = sqrt(R² - (d/2)²)
            R  /   |  d/2             n: unit normal to the left of S->E
             /  h  |                  sweep = 2 atan2(d/2, h)
           C ----- M
-            \\     |                  Counter-clockwise the centre is on the left of the chord, clockwise on
-           R  \\   |  d/2             the right: h and sweep change their sign together.  atan2 instead of
-                \\ |                  asin(d / 2R) keeps all digits near the semicircle.
+            \     |                  Counter-clockwise the centre is on the left of the chord, clockwise on
+           R  \   |  d/2             the right: h and sweep change their sign together.  atan2 instead of
+                \ |                  asin(d / 2R) keeps all digits near the semicircle.
                   S
 
     Returns:  the arc; both ends are exact to rounding.  A radius too small by no more than `allowed_mismatch`

@@ -12,12 +12,12 @@ __all__ = ["parabola_by_tangents"]
 
 
 def parabola_by_tangents(x0: float, y0: float, x1: float, y1: float, ix: float, iy: float) -> Curve:
-    """The parabola from S = (x0, y0) to E = (x1, y1) whose end tangents meet in T = (ix, iy).
+    r"""The parabola from S = (x0, y0) to E = (x1, y1) whose end tangents meet in T = (ix, iy).
 
               T                 A parabola arc is a quadratic Bezier curve, and T its middle control point:
-             / \\                    P(t) = (1-t)² S + 2 t (1-t) T + t² E
-            / _ \\                        = S + 2 (T - S) t + (S - 2T + E) t²
-           /.   .\\              P'(0) = 2 (T - S) and P'(1) = 2 (E - T): both tangents pass through T.
+             / \                   P(t) = (1-t)² S + 2 t (1-t) T + t² E
+            / _ \                       = S + 2 (T - S) t + (S - 2T + E) t²
+           /.   .\              P'(0) = 2 (T - S) and P'(1) = 2 (E - T): both tangents pass through T.
           S       E
 
     Raises:   Impossible: T on the line through S and E but not between them (the curve had to turn back);

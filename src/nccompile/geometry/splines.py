@@ -18,12 +18,12 @@ Point: TypeAlias = tuple[float, float]
 def cardinal_spline(
     points: Sequence[Point], start_tangent: Point | None, end_tangent: Point | None
 ) -> list[Curve]:
-    """The cubic pieces of a cardinal spline through `points`; neighbours share their tangent.
+    r"""The cubic pieces of a cardinal spline through `points`; neighbours share their tangent.
 
                  P1 ---> T1 parallel to P2 - P0         piece i in Hermite form, D = P(i+1) - P(i), d = |D|:
-               /    \\                                      P(t) = P(i) + M0 t + (3D - 2 M0 - M1) t²
-             P0      P2                                            + (M0 + M1 - 2D) t³
-                       \\                                   M0 = d T(i),  M1 = d T(i+1)
+               /    \                                    P(t) = P(i) + M0 t + (3D - 2 M0 - M1) t²
+             P0      P2                                         + (M0 + M1 - 2D) t³
+                       \                                 M0 = d T(i),  M1 = d T(i+1)
 
     Inner points:  T(i) = (P(i+1) - P(i-1)) / (d(i-1) + d(i)): tension 0 on chordal knots.  For equal chords
                    M = (P(i+1) - P(i-1)) / 2, the textbook cardinal (Catmull-Rom) spline; for unequal ones the

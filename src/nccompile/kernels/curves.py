@@ -1,11 +1,11 @@
-"""Curve rows: everything of `curve_points`, curvature, and arc length with its inverse.
+r"""Curve rows: everything of `curve_points`, curvature, and arc length with its inverse.
 
 Arcs have their length in closed form; for the others the integral of the speed |P'(u)| has none, so a table
 of nodes (u_i, s_i) is made once a curve and its inverse is asked each cycle:
 
-    |P'|  \\        /\\              the speed of a flat ellipse or a near-cusp has sharp minima; the table
-           \\      /  \\             starts with a node in each, so every interval holds a smooth piece,
-            \\____/    \\___         and halves intervals until Gauss quadrature of 20 points agrees with
+    |P'|  \         /\             the speed of a flat ellipse or a near-cusp has sharp minima; the table
+           \      /  \             starts with a node in each, so every interval holds a smooth piece,
+            \____/    \___         and halves intervals until Gauss quadrature of 20 points agrees with
     u     0 |  ||  |  |  1         10 points
 """
 

@@ -44,6 +44,7 @@ _STYLE: Any = {
 _DPI = 110
 _CELLS = 3000  # polyline points nearer than 1/3000 of the picture are one
 _BINS = 1500  # stretches of time in a curve: about one a pixel
+_DENSE = 10_000  # points above which thin lines keep the tracks apart
 _LABELS = 40  # more labels than this cover the path
 _NEAR = 2.0  # a limit is drawn if it is at most this many times the greatest value
 
@@ -145,7 +146,14 @@ def _view(axes: Any, drawing: Drawing, projection: Floats, *, labels: bool) -> N
     span = float(np.max(np.nanmax(points, axis=0) - np.nanmin(points, axis=0))) or 1.0
     rapid, feed = (thin(line, span / _CELLS) for line in corners)
     axes.plot(*rapid.T, color=_RAPID, linewidth=0.9, dashes=(5, 3), label="rapid", zorder=2)
-    axes.plot(*feed.T, color=_FEED, linewidth=1.2, solid_joinstyle="round", label="feed", zorder=3)
+    axes.plot(
+        *feed.T,
+        color=_FEED,
+        linewidth=1.2 if len(feed) < _DENSE else 0.6,
+        solid_joinstyle="round",
+        label="feed",
+        zorder=3,
+    )
     for kind, name, color, marker in (
         ("switch", "switch point", _SWITCH, "o"),
         ("m", "M function", _M, "D"),
@@ -223,6 +231,8 @@ def _per_axis(axes: Any, motion: Motion, values: Floats, moving: list[int], limi
             if limit[i] <= _NEAR * largest:
                 for side in (-limit[i], limit[i]):
                     axes.axhline(side, color=color, linewidth=0.9, dashes=(6, 3), alpha=0.7, zorder=1)
-        axes.plot(*envelope(motion.t, values[:, i], _BINS), color=color, linewidth=0.9, label=label)
+        axes.plot(
+            *envelope(motion.t, values[:, i], _BINS), color=color, linewidth=0.9, alpha=0.8, label=label
+        )
     if moving:
         axes.legend(loc="upper left", bbox_to_anchor=(0.2, 1.13), ncols=min(len(moving), 5), fontsize=8)
