@@ -67,10 +67,9 @@ def compile_program(
 def _summary(meta: Meta, compilation: Compilation, place: Path) -> str:
     totals = meta.totals
     warnings = sum(compilation.diagnostics.counts.values())
-    return (
-        f"{place}: {totals.segments} segment{'s' * (totals.segments != 1)}, {totals.length:.3f} mm, job time {totals.job_time:.3f} s"
-        + (f", {warnings} warning{'s' * (warnings != 1)}" if warnings else "")
-    )
+    segments = f"{totals.segments} segment{'s' * (totals.segments != 1)}"
+    said = f", {warnings} warning{'s' * (warnings != 1)}" if warnings else ""
+    return f"{place}: {segments}, {totals.length:.3f} mm, job time {totals.job_time:.3f} s{said}"
 
 
 def _write_report(path: Path, compilation: Compilation, meta: Meta | None, place: Path) -> None:
