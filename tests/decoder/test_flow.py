@@ -52,6 +52,12 @@ def test_an_endless_loop_that_counts_is_stopped_by_the_limit_of_jumps() -> None:
     assert "50 jumps" in found[0].message
 
 
+def test_an_endless_loop_is_stopped_by_default_after_ten_thousand_jumps() -> None:
+    _, found = read("% a\nN10 G36 O$i$ D1\nN20 G37 O$i$ D1\nN30 G20 L20 K$i$")
+    assert [f.code for f in found] == ["NC115"]
+    assert "10,000 jumps" in found[0].message
+
+
 def test_an_endless_loop_is_stopped_by_the_limit_of_blocks() -> None:
     blocks = ["N10 G36 O$i$ D1", "N15 G91", "N20 G1 X1 F10", "N25 G37 O$i$ D1", "N30 G20 L20 K$i$"]
     path, found = read("\n".join(["% a", *blocks]), max_blocks=100)

@@ -30,7 +30,7 @@ class DecodeOptions:
     start: Mapping[str, float] = field(default_factory=dict)
     defines: Mapping[str, float] = field(default_factory=dict)
     skip_blocks: bool = False
-    max_jumps: int = 100_000
+    max_jumps: int = 10_000
     max_blocks: int = 1_000_000
     max_switches: int = 8
     chunk: int = CHUNK
