@@ -4,6 +4,8 @@ text -> blocks -> toolpath -> passes -> plan -> queue -> cycle; each stage is a 
 from the stages before it (docs/architecture.md).
 """
 
-from nccompile.version import VERSION as __version__
+from nccompile.version import VERSION
 
 __all__ = ["__version__"]
+
+__version__ = VERSION

@@ -61,7 +61,9 @@ Define = Annotated[
 SkipBlocks = Annotated[bool, typer.Option("--skip-blocks", help="Leave out blocks that start with '/'.")]
 MaxJumps = Annotated[
     int | None,
-    typer.Option("--max-jumps", metavar="N", min=1, help="Jumps (G20) after which a loop counts as endless; default: 10000."),
+    typer.Option(
+        "--max-jumps", metavar="N", min=1, help="Jumps (G20) until a loop counts as endless; default: 10000."
+    ),
 ]
 AngleTolerance = Annotated[
     float | None,
