@@ -76,6 +76,22 @@ def test_the_clock_keeps_deadlines_and_counts_overruns(monkeypatch: pytest.Monke
     assert time.now - late == pytest.approx(0.001, abs=5e-6)  # no rush to make up for it
 
 
+def test_waking_up_a_cycle_late_is_an_overrun(monkeypatch: pytest.MonkeyPatch) -> None:
+    time = FakeTime()
+    monkeypatch.setattr(clock_module, "perf_counter", time.perf_counter)
+    clock, late = Clock(0.001), iter([0.0, 0.0009, 0.0, 0.0025])
+
+    def oversleep(seconds: float) -> None:
+        time.now += seconds + 300e-6 + next(late)
+
+    monkeypatch.setattr(clock_module, "sleep", oversleep)
+    clock.start()
+    for _ in range(5):  # 0.9 ms late leaves no time to sleep in the third cycle
+        clock.wait()
+    found = clock.statistics()
+    assert (found.cycles, found.overruns, found.worst_cycle) == (5, 1, 4)
+
+
 def test_percentiles_equal_those_of_the_list(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = Clock(0.001)
     late_us = np.random.default_rng(5).exponential(40, 5000)

@@ -58,8 +58,8 @@ PAGES: tuple[Page, ...] = (
     Page(
         "NC708",
         "cycles missed their deadline",
-        "In real time the work of a cycle was not done when its set position was due. If it was late by more than "
-        "a cycle, the following deadlines were moved, so that set positions are never handed out in a rush. Raise "
-        "[machine] cycle_us or relieve the computer.",
+        "In real time the work of a cycle was not done when its set position was due, or the computer woke the "
+        "task more than a cycle late. Then the following deadlines are moved, so that set positions are never "
+        "handed out in a rush. Raise [machine] cycle_us or relieve the computer.",
     ),
 )

@@ -27,7 +27,8 @@ _SWITCH_INTERVAL = 50e-6
 class Jitter:
     """How late set positions were handed out, µs; percentiles are good to 1 µs.
 
-    overruns: cycles whose work was not done at their deadline; worst_cycle: number of the latest cycle.
+    overruns: cycles whose work was not done at their deadline, or for which the computer woke the task more
+    than a cycle late; worst_cycle: number of the latest cycle.
     """
 
     cycles: int
@@ -63,13 +64,13 @@ class Clock:
     def wait(self) -> None:
         """Waits for the next deadline and records how late it was met."""
         rest = self._deadline - perf_counter()
-        if rest <= 0.0:
-            self._overruns += 1
-        elif rest > _SPIN:
+        if rest > _SPIN:
             sleep(rest - _SPIN)
         while (now := perf_counter()) < self._deadline:
             pass
         self._record(now - self._deadline)
+        if rest <= 0.0 or now - self._deadline > self._cycle:
+            self._overruns += 1
         self._deadline += self._cycle
         if now >= self._deadline:
             self._deadline = now + self._cycle

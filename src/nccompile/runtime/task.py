@@ -308,6 +308,6 @@ class CyclicTask:
         if jitter is not None and jitter.overruns:
             self._report(
                 "NC708", Severity.WARNING,
-                f"{jitter.overruns} of {jitter.cycles} cycles were not done at their deadline",
+                f"{jitter.overruns} of {jitter.cycles} cycles missed their deadline",
                 0, "raise cycle_us, or give the computer less else to do",
             )  # fmt: skip
