@@ -76,7 +76,8 @@ def _curve(draw: st.DrawFn, w: Writer, kind: str, angle: int, words: str) -> Non
 def _straight(draw: st.DrawFn, w: Writer, kind: str, angle: int, words: str) -> None:
     """A straight segment: feed move, rapid, additional axes, Z in the S-profile, relative."""
     if kind in ("G0", "G1"):
-        w.line(angle, draw(st.sampled_from([0.01, 3.0, 25.0])), words + draw(SWITCHES), kind)
+        length = draw(st.sampled_from([0.01, 3.0, 25.0]))
+        w.line(angle, length, words + (draw(SWITCHES) if length > 2 else ""), kind)
     elif kind == "additional":
         w.put(f"G1 A{draw(st.integers(-90, 90))} P{draw(st.integers(-20, 20))}{words}")
     elif kind == "profile":
@@ -113,7 +114,7 @@ def programs(draw: st.DrawFn, most: int = 14) -> str:
     """A program that compiles without errors on the built-in machine."""
     w = Writer()
     for _ in range(draw(st.integers(1, most))):
-        kind = draw(st.sampled_from(["G1", "G1", "G0", "additional", "profile", "relative"] + CURVES + STILL))
+        kind = draw(st.sampled_from(["G1", "G1", "G0", "additional", "profile", "relative", *CURVES, *STILL]))
         words = draw(FEEDS) + draw(RAMPS)
         if kind in CURVES:
             _curve(draw, w, kind, draw(ANGLES), words)
