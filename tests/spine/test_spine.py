@@ -18,7 +18,7 @@ from nccompile.runtime.trace import Cycles
 from nccompile.source import Source
 from nccompile.toolchain import Compilation
 from nccompile.toolchain import Options as CompileOptions
-from nccompile.toolpath import Floats, Kind, Toolpath
+from nccompile.toolpath import EventKind, Floats, Kind, Toolpath
 from tests.spine.programs import programs
 
 ROOT = Path(__file__).parents[2]
