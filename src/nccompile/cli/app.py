@@ -51,8 +51,11 @@ class Guarded(TyperCommand):
         except MemoryError as error:
             _say("error: not enough memory")
             raise typer.Exit(INTERNAL) from error
-        except (typer.Exit, typer.Abort, BrokenPipeError, KeyboardInterrupt):
+        except (typer.Exit, typer.Abort, KeyboardInterrupt):
             raise
+        except BrokenPipeError as error:  # the reader has what it wanted
+            _forget_stdout()
+            raise typer.Exit(0) from error
         except OSError as error:
             _say(f"error: {error.strerror or error}" + (f": {error.filename}" if error.filename else ""))
             raise typer.Exit(2) from error
@@ -112,8 +115,6 @@ def run(arguments: Sequence[str]) -> int:
         code = leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None)
     except KeyboardInterrupt:
         code = INTERRUPTED
-    except BrokenPipeError:
-        code = 0
     else:
         code = 0
     if code == INTERRUPTED:
@@ -126,13 +127,18 @@ def _close_stdout(code: int) -> int:
     try:
         sys.stdout.flush()
     except BrokenPipeError:
-        nothing = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nothing, sys.stdout.fileno())
-        os.close(nothing)
+        _forget_stdout()
     except OSError as error:
         _say(f"error: standard output cannot be written: {error.strerror or error}")
         return 2
     return code
+
+
+def _forget_stdout() -> None:
+    """Lets what is still written to standard output vanish, so that leaving Python does not fail on it."""
+    nothing = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nothing, sys.stdout.fileno())
+    os.close(nothing)
 
 
 def _exit_on_terminate() -> None:
