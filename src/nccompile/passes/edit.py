@@ -1,0 +1,220 @@
+"""Building the rewritten rows of a stretch of path: columns, marks and events follow their segment.
+
+    source row i    0 ────────p──── 1        a link says which part p0..p1 of a source segment became which
+                    ╲         ╲     ╲        part q0..q1 of a new row; events move along the links, so they
+    new row r       q0 ─────── q ──  q1      stay at the same fraction of the way
+
+Start marks go to the first new row of their segment, stop marks to the last one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from nccompile.toolpath.columns import Bytes, Curves, EventKind, Events, Floats, Ints, Kind, Mark, Toolpath
+from nccompile.toolpath.lengths import path_lengths
+
+__all__ = ["STARTS", "STOPS", "Draft", "Link", "Links", "Rows", "Shape", "compose", "is_motion", "place"]
+
+STARTS = int(Mark.TOOL_LEFT | Mark.TOOL_RIGHT | Mark.SMOOTH | Mark.ROUND | Mark.LOOP)
+"""Marks that act from the start of their segment."""
+
+STOPS = int(Mark.TOOL_STOP | Mark.CORNER_STOP | Mark.LOOP_STOP)
+"""Marks that act at the end of their segment."""
+
+Link: TypeAlias = tuple[int, float, float, int, float, float]
+Shape: TypeAlias = tuple[int, Sequence[float]]
+Rows: TypeAlias = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Links:
+    """Parts of source segments and the parts of new rows they became, ordered by (segment, p0).
+
+    segment: i8 (m,) source row;  p0, p1: f8 (m,) its part 0..1;  row: i8 (m,) new row;  q0, q1: its part.
+    """
+
+    segment: Rows
+    p0: Floats
+    p1: Floats
+    row: Rows
+    q0: Floats
+    q1: Floats
+
+    @classmethod
+    def copies(cls, origin: Rows) -> Links:
+        """Every new row is the whole of its source row."""
+        n = len(origin)
+        zero, one = np.zeros(n), np.ones(n)
+        return cls(origin, zero, one, np.arange(n), zero, one)
+
+    @classmethod
+    def from_rows(cls, rows: Sequence[Link]) -> Links:
+        """Links from tuples in any order."""
+        table = np.array(sorted(rows, key=lambda link: (link[0], link[1], link[3])), np.float64).reshape(
+            -1, 6
+        )
+        i, p0, p1, r, q0, q1 = table.T
+        return cls(i.astype(np.intp), p0.copy(), p1.copy(), r.astype(np.intp), q0.copy(), q1.copy())
+
+
+def place(links: Links, segment: int, position: float) -> tuple[int, float]:
+    """Where a point of a source segment went, as (row, position 0..1).
+
+    A point in a gap (a loop that was cut) goes to the end of the part before it.
+    """
+    lo, hi = np.searchsorted(links.segment, [segment, segment + 1])
+    if lo == hi:
+        return (
+            (int(links.row[lo - 1]), float(links.q1[lo - 1]))
+            if lo
+            else (int(links.row[0]), float(links.q0[0]))
+        )
+    at = int(lo)
+    for j in range(int(lo), int(hi)):
+        if links.p0[j] <= position:
+            at = j
+            if position <= links.p1[j]:
+                break
+    p0, p1 = float(links.p0[at]), float(links.p1[at])
+    q0, q1 = float(links.q0[at]), float(links.q1[at])
+    share = min(max((position - p0) / (p1 - p0), 0.0), 1.0) if p1 > p0 else 0.0
+    return int(links.row[at]), min(max(q0 + share * (q1 - q0), 0.0), 1.0)
+
+
+def compose(
+    source: Toolpath, origin: Rows, kind: Bytes, target: Floats, shape: Ints, curves: Curves, links: Links,
+    feed: Floats | None = None, clear: int = 0,
+) -> Toolpath:  # fmt: skip
+    """A chunk of new rows that starts where `source` starts.
+
+    Args:     origin: Shape (n,), source row whose feed, accelerations, D, S-profile and line each row takes;
+              kind, target: as in Toolpath;  shape: Shape (n,), row in `curves` or -1;  links: for events;
+              feed: Shape (n,) [mm/s], None: that of the origin;  clear: marks that have been carried out.
+    """
+    n = len(origin)
+    curved = np.flatnonzero(shape >= 0)
+    curve = np.full(n, -1, np.int32)
+    curve[curved] = np.arange(len(curved), dtype=np.int32)
+    picked = shape[curved]
+    path = Toolpath(
+        axes=source.axes,
+        start=source.start,
+        kind=kind.astype(np.uint8),
+        target=target,
+        curve=curve,
+        length=np.zeros(n),
+        feed=source.feed[origin] if feed is None else feed,
+        accel=source.accel[origin],
+        decel=source.decel[origin],
+        mark=_marks(source, origin, clear),
+        radius=source.radius[origin],
+        profile=source.profile[origin],
+        line=source.line[origin],
+        curves=Curves(curves.plane[picked], curves.parameters[picked]),
+        events=_events(source, links),
+        first=source.first,
+        names=source.names,
+    )
+    return path.replace(length=path_lengths(path))
+
+
+def _marks(source: Toolpath, origin: Rows, clear: int) -> npt.NDArray[np.uint16]:
+    """Marks of the new rows: starts on the first, stops on the last row of their origin."""
+    mark = np.zeros(len(origin), np.uint16)
+    kept = source.mark & np.uint16(0xFFFF & ~clear)
+    if not kept.any() or not len(origin):
+        return mark
+    order = np.argsort(origin, kind="stable")
+    ordered = origin[order]
+    for i in np.flatnonzero(kept):
+        lo, hi = np.searchsorted(ordered, [i, i + 1])
+        if lo < hi:
+            mark[order[lo]] |= kept[i] & np.uint16(STARTS)
+            mark[order[hi - 1]] |= kept[i] & np.uint16(STOPS)
+        elif lo < len(ordered):
+            mark[order[lo]] |= kept[i] & np.uint16(STARTS)
+        if lo == hi and lo > 0:
+            mark[order[lo - 1]] |= kept[i] & np.uint16(STOPS)
+    return mark
+
+
+def _events(source: Toolpath, links: Links) -> Events:
+    e = source.events
+    rows = []
+    for j in range(len(e)):
+        row, position = place(links, int(e.segment[j]), float(e.position[j]))
+        if e.kind[j] != EventKind.SWITCH:
+            position = float(e.position[j])
+        rows.append(
+            (row, int(e.kind[j]), int(e.number[j]), position, float(e.k[j]), float(e.l[j]), int(e.o[j]))
+        )
+    return Events.from_rows(rows)
+
+
+@dataclass
+class Draft:
+    """Rows written one by one, for passes that decide segment by segment."""
+
+    source: Toolpath
+    clear: int = 0
+    kind: list[int] = field(default_factory=list)
+    target: list[Floats] = field(default_factory=list)
+    shape: list[Shape | None] = field(default_factory=list)
+    origin: list[int] = field(default_factory=list)
+    links: list[Link] = field(default_factory=list)
+    feed: dict[int, float] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.kind)
+
+    def copy(self, i: int) -> None:
+        """The source row i as it is."""
+        s = self.source
+        row = int(s.curve[i])
+        shape = None if row < 0 else (int(s.curves.plane[row]), s.curves.parameters[row].tolist())
+        self.add(int(s.kind[i]), s.target[i], shape, i)
+
+    def add(
+        self, kind: int, target: Floats, shape: Shape | None, origin: int, p0: float = 0.0, p1: float = 1.0
+    ) -> None:
+        """A new row that stands for the part p0..p1 of the source row `origin`."""
+        self.links.append((origin, p0, p1, len(self.kind), 0.0, 1.0))
+        self.insert(kind, target, shape, origin)
+
+    def insert(self, kind: int, target: Floats, shape: Shape | None, origin: int) -> None:
+        """A new row with the columns of `origin`; its links are the caller's."""
+        self.kind.append(kind)
+        self.target.append(target)
+        self.shape.append(shape)
+        self.origin.append(origin)
+
+    def link(self, segment: int, p0: float, p1: float, row: int, q0: float = 0.0, q1: float = 1.0) -> None:
+        """Says that p0..p1 of a source row became q0..q1 of a new row."""
+        self.links.append((segment, p0, p1, row, q0, q1))
+
+    def build(self) -> Toolpath:
+        """The new rows as a chunk."""
+        n, k = len(self.kind), len(self.source.axes)
+        shapes = [s for s in self.shape if s is not None]
+        at = np.full(n, -1, np.int32)
+        at[[r for r, s in enumerate(self.shape) if s is not None]] = np.arange(len(shapes), dtype=np.int32)
+        origin = np.array(self.origin, np.intp)
+        feed = self.source.feed[origin].copy() if n else np.zeros(0)
+        for row, value in self.feed.items():
+            feed[row] = value
+        return compose(
+            self.source, origin, np.array(self.kind, np.uint8),
+            np.array(self.target, np.float64).reshape(n, k), at, Curves.from_rows(shapes),
+            Links.from_rows(self.links), feed, self.clear,
+        )  # fmt: skip
+
+
+def is_motion(kind: int) -> bool:
+    """Whether a segment of this kind cuts: not a positioning, a jump or a wait."""
+    return Kind.LINE <= kind <= Kind.POLYNOMIAL

@@ -1,0 +1,65 @@
+"""move-start: a closed contour begins at another of its segments.
+
+    in    rapid ─> A ─1─ B ─2─ C ─3─ A        out (segment 2)   rapid ─> B ─2─ C ─3─ A ─1─ B
+
+A contour is a run of feed segments; it is closed if it ends where it starts on all axes.  The move before it
+now goes to the new start.  A move after the contour starts at the new end, so the next position is unchanged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from nccompile.errors import UsageError
+from nccompile.geometry.tolerance import COINCIDENT
+from nccompile.passes.base import Context, Pass
+from nccompile.passes.edit import Draft, is_motion
+from nccompile.toolpath.columns import Toolpath
+
+__all__ = ["MoveStart"]
+
+
+@dataclass(frozen=True)
+class MoveStart(Pass):
+    """Another first segment for the contour that holds it; segment: from 1, as the path reaches this pass.
+
+    The whole path is held in memory.
+    """
+
+    name: ClassVar[str] = "move-start"
+    segment: int
+
+    def rewrite(self, chunks: Iterator[Toolpath], context: Context) -> Iterator[Toolpath]:
+        """See the module."""
+        path = Toolpath.join(list(chunks))
+        i = self.segment - 1
+        if not (0 <= i < len(path) and is_motion(int(path.kind[i]))):
+            raise UsageError(f"move-start: segment {self.segment} is not a feed segment of the path")
+        first, last = i, i
+        while first > 0 and is_motion(int(path.kind[first - 1])):
+            first -= 1
+        while last + 1 < len(path) and is_motion(int(path.kind[last + 1])):
+            last += 1
+        start = path.starts()[first]
+        if np.abs(start - path.target[last]).max() > COINCIDENT:
+            raise UsageError(f"move-start: the contour of segment {self.segment} is not closed")
+        if first == 0:
+            path = path.replace(start=path.starts()[i])
+        yield _rotated(path, first, i, last)
+
+
+def _rotated(path: Toolpath, first: int, i: int, last: int) -> Toolpath:
+    if i == first:
+        return path
+    draft = Draft(path)
+    for j in range(first):
+        draft.copy(j)
+    if first > 0:
+        draft.target[first - 1] = path.target[i - 1]
+    for j in [*range(i, last + 1), *range(first, i), *range(last + 1, len(path))]:
+        draft.copy(j)
+    return draft.build()
