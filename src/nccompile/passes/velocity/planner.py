@@ -55,16 +55,22 @@ class Planner:
 
     settings: PlanSettings
     _pending: Toolpath | None = field(default=None, init=False)
+    _idle: Toolpath | None = field(default=None, init=False)
     _v_before: float = field(default=0.0, init=False)
 
     def feed(self, chunk: Toolpath) -> Iterator[Toolpath]:
         """Takes the next chunk; yields what it settles."""
         if len(chunk):
             self._pending = chunk if self._pending is None else Toolpath.join([self._pending, chunk])
+            self._idle = None
             yield from self._settle(complete=False)
+        elif self._pending is None and chunk.first == 0:
+            self._idle = chunk  # a path without a segment still has axes and a start
 
     def finish(self) -> Iterator[Toolpath]:
         """The rest of the path, which ends at rest."""
+        if self._idle is not None:
+            yield plan_window(self._idle, self.settings, 0.0, complete=True)[0]
         if self._pending is not None:
             yield from self._settle(complete=True)
 
