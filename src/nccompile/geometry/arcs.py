@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from math import atan2, hypot, isfinite, pi, sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from nccompile.geometry.curve import XY, Curve, Impossible
-from nccompile.geometry.tolerance import COINCIDENT, allowed_mismatch
+from nccompile.geometry.tolerance import ARC_MISMATCH, ARC_MISMATCH_MOST, ARC_MISMATCH_RATIO, COINCIDENT
+from nccompile.kernels import arcs as kernels
+from nccompile.kernels.arcs import distance
 from nccompile.kernels.curves import ARC
 
-__all__ = ["Circle", "arc_by_center", "arc_by_radius", "meet", "through"]
+__all__ = ["TOLERANCES", "Circle", "arc_by_center", "arc_by_radius", "meet"]
+
+TOLERANCES = (COINCIDENT, ARC_MISMATCH, ARC_MISMATCH_RATIO, ARC_MISMATCH_MOST)
+"""What the kernels need of `geometry.tolerance`, in their order."""
 
 
 class Circle(NamedTuple):
@@ -40,19 +46,20 @@ def arc_by_radius(x0: float, y0: float, x1: float, y1: float, radius: float, ccw
     Raises:   Impossible: radius not above 0, ends that coincide, ends farther apart than the diameter.
     Source:   SoftMotion §3.2.4; own derivation.
     """
-    half = 0.5 * hypot(x1 - x0, y1 - y0)
-    if not (radius > 0.0 and isfinite(radius)):
+    x0, y0, x1, y1, radius = float(x0), float(y0), float(x1), float(y1), float(radius)
+    row = np.empty(5)
+    status = kernels.by_radius(x0, y0, x1, y1, radius, bool(ccw), *TOLERANCES, row)
+    if status == kernels.NO_RADIUS:
         raise Impossible(f"the radius must be greater than 0, not {radius:.6g}")
-    if 2.0 * half <= COINCIDENT:
+    if status == kernels.ONE_POINT:
         raise Impossible("start and end of the arc are the same point, so its radius alone does not fix it")
-    if half > radius:
-        if half - radius > allowed_mismatch(radius):
-            raise Impossible(
-                f"the radius {radius:.6g} mm is {half - radius:.4g} mm too small: "
-                f"start and end are {2.0 * half:.6g} mm apart"
-            )
-        radius = half
-    return Curve(ARC, XY, tuple(_minor(x0, y0, x1, y1, float(radius), ccw)))
+    if status == kernels.TOO_SMALL:
+        half = 0.5 * distance(x1 - x0, y1 - y0)
+        raise Impossible(
+            f"the radius {radius:.6g} mm is {half - radius:.4g} mm too small: "
+            f"start and end are {2.0 * half:.6g} mm apart"
+        )
+    return Curve(ARC, XY, tuple(row.tolist()))
 
 
 def arc_by_center(x0: float, y0: float, x1: float, y1: float, cx: float, cy: float, ccw: bool) -> Curve:
@@ -62,18 +69,23 @@ def arc_by_center(x0: float, y0: float, x1: float, y1: float, cx: float, cy: flo
     Limits:   see `meet` for how a small difference is taken up.
     Source:   SoftMotion §3.2.4.
     """
-    start = hypot(x0 - cx, y0 - cy)
-    end = hypot(x1 - cx, y1 - cy)
-    if not isfinite(start + end):
+    x0, y0, x1, y1, cx, cy = float(x0), float(y0), float(x1), float(y1), float(cx), float(cy)
+    row = np.empty(5)
+    status = kernels.by_centre(x0, y0, x1, y1, cx, cy, bool(ccw), *TOLERANCES, row)
+    if status == kernels.DONE:
+        return Curve(ARC, XY, tuple(row.tolist()))
+    if status == kernels.NOT_FINITE:
         raise Impossible("the centre or an end of the arc is not a finite number")
-    if min(start, end) <= COINCIDENT:
+    start = distance(x0 - cx, y0 - cy)
+    end = distance(x1 - cx, y1 - cy)
+    if status == kernels.AT_CENTRE:
         raise Impossible(f"the centre is the {'start' if start <= end else 'end'} point of the arc")
-    if abs(end - start) > allowed_mismatch(max(start, end)):
+    if status == kernels.APART:
         raise Impossible(
             f"the centre is {start:.6g} mm from the start but {end:.6g} mm from the end "
             f"({abs(end - start):.4g} mm difference)"
         )
-    return Curve(ARC, XY, tuple(meet(x0, y0, x1, y1, cx, cy, ccw, allowed_mismatch(start))))
+    raise _too_near(x0, y0, x1, y1, float(row[0]))
 
 
 def meet(x0: float, y0: float, x1: float, y1: float, cx: float, cy: float, ccw: bool, most: float) -> Circle:
@@ -93,46 +105,17 @@ def meet(x0: float, y0: float, x1: float, y1: float, cx: float, cy: float, ccw: 
     Args:     most: greatest move of the centre [mm].
     Raises:   Impossible: a sweep over 180° whose centre had to move by more than `most`.
     """
-    d = hypot(x1 - x0, y1 - y0)
-    if d <= COINCIDENT:
-        radius = hypot(x0 - cx, y0 - cy)
-        return Circle(cx, cy, radius, atan2(y0 - cy, x0 - cx), 2.0 * pi if ccw else -2.0 * pi)
-    tx, ty = (x1 - x0) / d, (y1 - y0) / d
-    move = (cx - 0.5 * (x0 + x1)) * tx + (cy - 0.5 * (y0 + y1)) * ty
-    if abs(move) <= most:
-        return through(x0, y0, x1, y1, cx - move * tx, cy - move * ty, ccw)
-    left = tx * (cy - y0) - ty * (cx - x0) > 0.0
-    if left != ccw:
-        raise Impossible(
-            f"start and end are only {d:.4g} mm apart: to meet both, the centre had to move by "
-            f"{abs(move):.4g} mm"
-        )
-    radius = 0.5 * (hypot(x0 - cx, y0 - cy) + hypot(x1 - cx, y1 - cy))
-    return _minor(x0, y0, x1, y1, max(radius, 0.5 * d), ccw)
+    row = np.empty(5)
+    status = kernels.meet(
+        float(x0), float(y0), float(x1), float(y1), float(cx), float(cy), bool(ccw), float(most), COINCIDENT, row
+    )  # fmt: skip
+    if status == kernels.TOO_NEAR:
+        raise _too_near(x0, y0, x1, y1, float(row[0]))
+    return Circle(*row.tolist())
 
 
-def through(x0: float, y0: float, x1: float, y1: float, cx: float, cy: float, ccw: bool) -> Circle:
-    """Radius and angles of the arc about (cx, cy), which is equally far from both ends.
-
-    The sweep comes from cross and dot product of both radii: a small one keeps all its digits.
-    """
-    ax, ay, bx, by = x0 - cx, y0 - cy, x1 - cx, y1 - cy
-    sweep = atan2(ax * by - ay * bx, ax * bx + ay * by)
-    if ccw and sweep <= 0.0:
-        sweep += 2.0 * pi
-    if not ccw and sweep >= 0.0:
-        sweep -= 2.0 * pi
-    return Circle(cx, cy, hypot(ax, ay), atan2(ay, ax), sweep)
-
-
-def _minor(x0: float, y0: float, x1: float, y1: float, radius: float, ccw: bool) -> Circle:
-    """The arc of at most 180° with this radius >= half the chord (drawing: `arc_by_radius`)."""
-    dx, dy = x1 - x0, y1 - y0
-    d = hypot(dx, dy)
-    half = 0.5 * d
-    height = sqrt(max((radius - half) * (radius + half), 0.0))
-    side = height / d if ccw else -height / d
-    cx = 0.5 * (x0 + x1) - side * dy
-    cy = 0.5 * (y0 + y1) + side * dx
-    sweep = 2.0 * atan2(half, height)
-    return Circle(cx, cy, radius, atan2(y0 - cy, x0 - cx), sweep if ccw else -sweep)
+def _too_near(x0: float, y0: float, x1: float, y1: float, move: float) -> Impossible:
+    return Impossible(
+        f"start and end are only {distance(x1 - x0, y1 - y0):.4g} mm apart: to meet both, the centre had to "
+        f"move by {abs(move):.4g} mm"
+    )

@@ -6,7 +6,7 @@ mm by up to 3e-3 mm.  Computing in binary64 adds about 1e-16 of the largest coor
 """
 
 __all__ = [
-    "ARC_MISMATCH", "ARC_MISMATCH_RATIO", "COINCIDENT", "LENGTH_RATIO", "MEETING", "MEETING_RATIO",
+    "ARC_MISMATCH", "ARC_MISMATCH_MOST", "ARC_MISMATCH_RATIO", "COINCIDENT", "LENGTH_RATIO", "MEETING", "MEETING_RATIO",
     "PARALLEL", "allowed_mismatch",
 ]  # fmt: skip
 
@@ -18,7 +18,7 @@ shows on the part."""
 ARC_MISMATCH_RATIO = 1e-3
 """The same for large arcs, as a part of the radius: programs that state the centre with few digits."""
 
-_ARC_MISMATCH_MOST = 0.5
+ARC_MISMATCH_MOST = 0.5
 """[mm] More than this is a mistake at any radius."""
 
 COINCIDENT = 1e-9
@@ -42,4 +42,4 @@ LENGTH_RATIO = 1e-12
 
 def allowed_mismatch(radius: float) -> float:
     """How far [mm] the ends of an arc of this radius may be from one circle."""
-    return min(max(ARC_MISMATCH, ARC_MISMATCH_RATIO * radius), _ARC_MISMATCH_MOST)
+    return min(max(ARC_MISMATCH, ARC_MISMATCH_RATIO * radius), ARC_MISMATCH_MOST)
