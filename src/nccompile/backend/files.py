@@ -45,15 +45,21 @@ def replacing(path: Path) -> Iterator[tuple[BinaryIO, Callable[[], None]]]:
     except OSError as error:
         raise UsageError(f"{path} cannot be written: {error.strerror}") from error
     finally:
-        if file is not None and not committed:
+        if not committed:
             _discard(file, part)
 
 
-def _discard(file: BinaryIO, part: Path) -> None:
-    """Closes and removes an unfinished file; a full disk may make the close fail, the removal goes on."""
+def _discard(file: BinaryIO | None, part: Path) -> None:
+    """Closes and removes an unfinished file.
+
+    A full disk may make the close fail, and Ctrl-C may come between the making of the file and its handle: it
+    is removed either way.
+    """
     with suppress(OSError):
-        file.close()
-    part.unlink(missing_ok=True)
+        if file is not None:
+            file.close()
+    with suppress(OSError):
+        part.unlink()
 
 
 def _sync_folder(folder: Path) -> None:
