@@ -7,11 +7,29 @@ file:line:column and the text of the line.  Lines and columns count from 1, colu
 from __future__ import annotations
 
 import hashlib
+import os
+import shutil
+import tempfile
+from bisect import bisect_right
+from codecs import BOM_UTF8, getincrementaldecoder
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from threading import Lock
+from typing import BinaryIO
 
-__all__ = ["NOWHERE", "Source", "Span"]
+from nccompile.errors import UsageError
+
+__all__ = ["MOST_LINE", "NOWHERE", "STREAMED", "LargeSource", "Source", "Span"]
+
+STREAMED = 400_000
+"""Bytes above which a program is not held in memory: some ten thousand lines."""
+
+MOST_LINE = 1 << 26
+"""Bytes in a line above which a file is refused at once."""
+
+_PART = 1 << 20
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -50,13 +68,32 @@ class Source:
 
     @classmethod
     def read(cls, path: Path) -> Source:
-        """Reads a file; raises OSError as `Path.read_bytes` does."""
-        return cls.from_bytes(str(path), path.read_bytes())
+        """Reads a file, a large one when its parts are asked for; raises OSError."""
+        file = path.open("rb")
+        if path.is_file() and os.fstat(file.fileno()).st_size > STREAMED:
+            return LargeSource(str(path), file)
+        with file:
+            return cls.from_stream(str(path), file)
+
+    @classmethod
+    def from_stream(cls, name: str, stream: BinaryIO) -> Source:
+        """Reads a pipe to its end; what does not fit `STREAMED` bytes goes to a temporary file."""
+        head = stream.read(STREAMED + 1)
+        if len(head) <= STREAMED:
+            return cls.from_bytes(name, head)
+        file = tempfile.TemporaryFile()  # noqa: SIM115 - the source keeps it open
+        file.write(head)
+        shutil.copyfileobj(stream, file, _PART)
+        return LargeSource(name, file)
 
     @cached_property
     def lines(self) -> list[str]:
         """The lines without their ends; CR LF, LF and CR all end a line."""
         return self.text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+    def each_line(self, after: int = 0) -> Iterator[str]:
+        """The lines behind line `after`, one by one."""
+        yield from self.lines[after:] if after else self.lines
 
     def line(self, number: int) -> str:
         """The text of line `number` (from 1); empty outside the file."""
@@ -67,3 +104,111 @@ class Source:
         text = self.line(number)
         first = len(text) - len(text.lstrip()) + 1
         return Span(number, first, max(first + 1, len(text.rstrip()) + 1))
+
+
+class LargeSource(Source):
+    """A source whose bytes stay in their file; lines are decoded when they are asked for.
+
+    Texts and places are those of a `Source` of the same bytes.  `text` and `lines` read everything.
+    """
+
+    def __init__(self, name: str, file: BinaryIO) -> None:
+        object.__setattr__(self, "name", name)
+        self._file = file
+        self._lock = Lock()
+        self._known = [1], [0]  # lines and their places, ascending
+        self.size = file.seek(0, os.SEEK_END)
+
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+    def __repr__(self) -> str:
+        return f"LargeSource({self.name!r}, {self.size} bytes)"
+
+    def read_at(self, place: int, count: int) -> bytes:
+        """At most `count` bytes from a place of the file; may be called by several threads."""
+        with self._lock:
+            self._file.seek(place)
+            return self._file.read(count)
+
+    def parts(self) -> Iterator[bytes]:
+        """The bytes of the file in order."""
+        for place in range(0, self.size, _PART):
+            yield self.read_at(place, _PART)
+
+    @cached_property
+    def sha256(self) -> str:
+        """SHA-256 of the bytes."""
+        digest = hashlib.sha256()
+        for part in self.parts():
+            digest.update(part)
+        return digest.hexdigest()
+
+    @cached_property
+    def encoding(self) -> str:
+        """UTF-8 if all bytes are, else Latin-1."""
+        decoder = getincrementaldecoder("utf-8")()
+        try:
+            for part in self.parts():
+                if not part.isascii() or decoder.getstate()[0]:
+                    decoder.decode(part)
+            decoder.decode(b"", True)
+        except UnicodeDecodeError:
+            return "latin-1"
+        return "utf-8"
+
+    @cached_property
+    def begin(self) -> int:
+        """Where the text begins: after a byte-order mark."""
+        marked = self.read_at(0, 3) == BOM_UTF8
+        return 3 if marked and self.encoding == "utf-8" else 0
+
+    def decode(self, line: bytes) -> str:
+        """Bytes of this file as text."""
+        return line.decode("ascii" if line.isascii() else self.encoding)
+
+    @cached_property
+    def text(self) -> str:
+        """The whole text, decoded."""
+        return self.read_at(self.begin, self.size).decode(self.encoding)
+
+    def each_line(self, after: int = 0) -> Iterator[str]:
+        """The lines behind line `after`, one by one; raises UsageError for one above `MOST_LINE` bytes."""
+        at = max(bisect_right(self._known[0], after + 1) - 1, 0)
+        number = self._known[0][at]
+        for line in self._raw_lines(max(self._known[1][at], self.begin), number):
+            if number > after:
+                yield self.decode(line)
+            number += 1
+
+    def note(self, lines: Sequence[int], places: Sequence[int]) -> None:
+        """Takes down where some lines start, so that `line` finds them and those after them quickly."""
+        if len(lines) and lines[0] > self._known[0][-1]:
+            self._known[0].extend(lines)
+            self._known[1].extend(places)
+
+    def line(self, number: int) -> str:
+        """The text of line `number` (from 1); empty outside the file."""
+        if number < 1:
+            return ""
+        return next(self.each_line(number - 1), "")
+
+    def _raw_lines(self, place: int, number: int) -> Iterator[bytes]:
+        rest = b""
+        while part := self.read_at(place, _PART):
+            place += len(part)
+            rest += part
+            if len(rest) > MOST_LINE:
+                raise too_long(self.name, number)
+            lines = rest.splitlines(keepends=True)
+            rest = b"" if lines[-1].endswith(b"\n") else lines.pop()  # CR may be one half of CR LF
+            for line in lines:
+                yield line[: -2 if line.endswith(b"\r\n") else -1]
+                number += 1
+        if rest:
+            yield rest.removesuffix(b"\r")
+
+
+def too_long(name: str, line: int) -> UsageError:
+    """The refusal of a file with a line above `MOST_LINE` bytes."""
+    return UsageError(f"{name}: line {line} has more than {MOST_LINE:,} characters; this is no part program")

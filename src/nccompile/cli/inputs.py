@@ -87,7 +87,7 @@ def machine_of(file: Path | None) -> Machine:
 def read_program(path: Path) -> Source:
     """The program at a path, `-` for standard input; raises UsageError."""
     if path == STDIN:
-        return Source.from_bytes("<stdin>", sys.stdin.buffer.read())
+        return Source.from_stream("<stdin>", sys.stdin.buffer)
     if is_queue(path):
         raise UsageError(f"{path} is an OutQueue, not a part program: it was compiled already")
     try:

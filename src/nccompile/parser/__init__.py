@@ -21,12 +21,14 @@ __all__ = [
     "Comment",
     "Header",
     "ReadSource",
+    "Reader",
     "Value",
     "Variable",
     "Word",
     "parse",
     "read_header",
     "read_line",
+    "report_control",
 ]
 
 MAX_UNREADABLE = 1000
@@ -44,33 +46,19 @@ def parse(source: Source, diagnostics: Diagnostics) -> Iterator[Block]:
     """
     if _is_binary(source, diagnostics):
         return
-    reader = _Reader(source, diagnostics)
-    any_block = False
-    for line, text in enumerate(source.lines, 1):
-        node = reader.read(line, text)
-        if node is None:
-            continue
-        if isinstance(node, Header):
-            if not reader.header(node, any_block):
-                return
-        elif node.words or node.number or node.comments or not node.sound:
-            if not any_block and (node.words or node.number):
-                reader.started(node)
-            any_block = any_block or bool(node.words or node.number or not node.sound)
-            yield node
-            if reader.unreadable >= MAX_UNREADABLE:
-                reader.give_up(node)
-                return
-    if not any_block:
-        diagnostics.report(
-            "NC012", Severity.ERROR, "there is no program in this file: it has no block", source, Span(1, 1, 1),
-            "a program is a line with % and its name, then blocks such as N10 G1 X10 F20",
-        )  # fmt: skip
+    reader = Reader(source, diagnostics)
+    for line, text in enumerate(source.each_line(), 1):
+        block = reader.take(line, text)
+        if block is not None:
+            yield block
+        if reader.stopped:
+            return
+    reader.finish()
 
 
 def read_header(source: Source) -> Header | None:
     """The header line of a program; None if a block or anything else comes first."""
-    for line, text in enumerate(source.lines, 1):
+    for line, text in enumerate(source.each_line(), 1):
         bare = text.strip()
         if not bare or (bare.startswith("(") and bare.endswith(")")):
             continue
@@ -81,15 +69,46 @@ def read_header(source: Source) -> Header | None:
     return None
 
 
-class _Reader:
-    """Reads single lines and reports what is wrong with them."""
+class Reader:
+    """Reads the lines of a program in order and reports what is wrong with them.
+
+    any_block: a block was read, so header and start are dealt with;  stopped: the rest is not to be read.
+    """
 
     def __init__(self, source: Source, diagnostics: Diagnostics) -> None:
         self.source = source
         self.diagnostics = diagnostics
         self.nodes = source.nodes if isinstance(source, ReadSource) else ()
+        self.any_block = False
+        self.stopped = False
         self.seen_header = False
         self.unreadable = 0
+
+    def take(self, line: int, text: str) -> Block | None:
+        """The block of the next line; None if it is none."""
+        node = self.read(line, text)
+        if node is None:
+            return None
+        if isinstance(node, Header):
+            self.stopped = not self.header(node, self.any_block)
+            return None
+        if not (node.words or node.number or node.comments or not node.sound):
+            return None
+        if not self.any_block and (node.words or node.number):
+            self.started(node)
+        self.any_block = self.any_block or bool(node.words or node.number or not node.sound)
+        if self.unreadable >= MAX_UNREADABLE:
+            self.give_up(node)
+            self.stopped = True
+        return node
+
+    def finish(self) -> None:
+        """Called after the last line."""
+        if not self.any_block:
+            self.diagnostics.report(
+                "NC012", Severity.ERROR, "there is no program in this file: it has no block", self.source,
+                Span(1, 1, 1), "a program is a line with % and its name, then blocks such as N10 G1 X10 F20",
+            )  # fmt: skip
 
     def read(self, line: int, text: str) -> Block | Header | None:
         """The node of one line; None for an empty one."""
@@ -126,7 +145,7 @@ class _Reader:
         if not self.seen_header and not after_blocks:
             self.seen_header = True
             return True
-        rest = self.source.lines[header.line :]
+        rest = self.source.each_line(header.line)
         if any(_COMMENTS.sub("", line).strip("\x1a \t\f\v") for line in rest):
             self.report(header.line, Fault(
                 "NC008", "a second program starts here", header.column - 1, header.end - 1,
@@ -147,15 +166,21 @@ def _is_binary(source: Source, diagnostics: Diagnostics) -> bool:
     )
     if found is None:
         return False
-    before = source.text[: found.start()].replace("\r\n", "\n").replace("\r", "\n")
-    line = before.count("\n") + 1
+    report_control(source, diagnostics, source.text[: found.start()], found.group())
+    return True
+
+
+def report_control(
+    source: Source, diagnostics: Diagnostics, before: str, character: str, line: int = 1
+) -> None:
+    """Reports a control character; `before` is the text in front of it, from the start of line `line`."""
+    before = before.replace("\r\n", "\n").replace("\r", "\n")
+    line += before.count("\n")
     column = len(before) - before.rfind("\n")
-    character = ord(found.group())
-    wide = source.text[:2] in {"\xff\xfe", "\xfe\xff"}
+    wide = (before if line == 1 else source.line(1))[:2] in {"\xff\xfe", "\xfe\xff"}
     diagnostics.report(
         "NC010", Severity.ERROR,
-        f"this is not a text file: it holds the control character U+{character:04X}",
+        f"this is not a text file: it holds the control character U+{ord(character):04X}",
         source, Span(line, column, column + 1),
         "save the program as UTF-8" if wide else "",
     )  # fmt: skip
-    return True
