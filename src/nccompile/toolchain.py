@@ -132,6 +132,6 @@ class Compilation:
 
 
 def machine_digest(machine: Machine) -> str:
-    """SHA-256 of the machine's content, whatever its file looks like (order, comments, defaults left out)."""
-    content = machine.model_dump(mode="json", by_alias=True)
+    """SHA-256 of what a machine says beyond the defaults, whatever its file looks like (order, comments)."""
+    content = machine.model_dump(mode="json", by_alias=True, exclude_defaults=True)
     return hashlib.sha256(json.dumps(content, sort_keys=True, separators=(",", ":")).encode()).hexdigest()

@@ -15,6 +15,11 @@ TEXT = (ROOT / "README.md").read_text()
 SESSIONS = re.findall(r"^\$ (nccompile [^\n]*)\n((?:(?!\$ |```)[^\n]*\n)*)", TEXT, re.MULTILINE)
 
 
+def _masked(text: str) -> str:
+    """Without hashes: they change with every byte of the samples, and say nothing to a reader."""
+    return re.sub(r"sha256 [0-9a-f]{16}", "sha256 ...", text)
+
+
 def test_the_sessions_of_the_readme(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -29,4 +34,4 @@ def test_the_sessions_of_the_readme(
         run(shlex.split(command)[1:])
         printed = capsys.readouterr()
         if shown.strip():
-            assert printed.out + printed.err == shown.rstrip("\n") + "\n", command
+            assert _masked(printed.out + printed.err) == _masked(shown.rstrip("\n") + "\n"), command
