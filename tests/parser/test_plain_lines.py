@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from nccompile.diagnostics import Diagnostics
 from nccompile.parser import ReadSource, parse, read_line
-from nccompile.parser.lines import plain_block, read_by_grammar
+from nccompile.parser.lines import plain_block, plain_header, read_by_grammar
 from nccompile.source import Source
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabnxyz"
@@ -29,6 +29,13 @@ def test_plain_blocks_equal_those_of_the_grammar(line: int, text: str) -> None:
     block = plain_block(line, text)
     if block is not None:
         assert block == read_by_grammar(line, text)
+
+
+@given(st.integers(1, 99), st.text("% aB_.-1(\t", max_size=6))
+def test_plain_headers_equal_those_of_the_grammar(line: int, text: str) -> None:
+    header = plain_header(line, "%" + text)
+    if header is not None:
+        assert header == read_by_grammar(line, "%" + text)
 
 
 @given(st.integers(1, 99), st.text("NGXYF0123456789.-+ ", max_size=24))

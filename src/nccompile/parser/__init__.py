@@ -13,7 +13,7 @@ from nccompile.diagnostics import Diagnostics, Severity
 from nccompile.parser.faults import Fault
 from nccompile.parser.lines import MAX_LINE, ReadSource, Unread, read_line
 from nccompile.parser.tree import Block, Comment, Header, Value, Variable, Word
-from nccompile.source import Source, Span
+from nccompile.source import LargeSource, Source, Span
 
 __all__ = [
     "MAX_LINE",
@@ -35,6 +35,7 @@ MAX_UNREADABLE = 1000
 """Lines without sense after which reading stops: this is no part program."""
 
 _COMMENTS = re.compile(r"\([^()]*\)")
+_WIDE = ("\xff\xfe", "\xfe\xff")  # UTF-16, read as Latin-1
 _CONTROL = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 
 
@@ -166,21 +167,33 @@ def _is_binary(source: Source, diagnostics: Diagnostics) -> bool:
     )
     if found is None:
         return False
-    report_control(source, diagnostics, source.text[: found.start()], found.group())
+    before = source.text[: found.start()].replace("\r\n", "\n").replace("\r", "\n")
+    wide = source.text[:2] in _WIDE
+    _refuse(
+        source,
+        diagnostics,
+        before.count("\n") + 1,
+        len(before) - before.rfind("\n"),
+        ord(found.group()),
+        wide,
+    )
     return True
 
 
-def report_control(
-    source: Source, diagnostics: Diagnostics, before: str, character: str, line: int = 1
-) -> None:
-    """Reports a control character; `before` is the text in front of it, from the start of line `line`."""
-    before = before.replace("\r\n", "\n").replace("\r", "\n")
-    line += before.count("\n")
-    column = len(before) - before.rfind("\n")
-    wide = (before if line == 1 else source.line(1))[:2] in {"\xff\xfe", "\xfe\xff"}
+def report_control(source: LargeSource, diagnostics: Diagnostics, place: int) -> None:
+    """Reports the control character at byte `place` of a file."""
+    line = source.line_at(place)
+    column = len(source.decode(source.line_start(place))) + 1
+    wide = source.encoding == "latin-1" and source.decode(source.read_at(0, 2)) in _WIDE
+    _refuse(source, diagnostics, line, column, source.read_at(place, 1)[0], wide)
+
+
+def _refuse(
+    source: Source, diagnostics: Diagnostics, line: int, column: int, character: int, wide: bool
+) -> None:  # fmt: skip
     diagnostics.report(
         "NC010", Severity.ERROR,
-        f"this is not a text file: it holds the control character U+{ord(character):04X}",
+        f"this is not a text file: it holds the control character U+{character:04X}",
         source, Span(line, column, column + 1),
         "save the program as UTF-8" if wide else "",
     )  # fmt: skip

@@ -6,10 +6,11 @@ import functools
 from typing import Any
 
 from lark import Lark, Token, Transformer
+from lark.exceptions import UnexpectedInput, UnexpectedToken
 
 from nccompile.parser.tree import Block, Comment, Header, Value, Variable, Word
 
-__all__ = ["line_parser"]
+__all__ = ["line_parser", "read"]
 
 
 class _Tree(Transformer[Token, Block | Header]):
@@ -67,3 +68,14 @@ def line_parser() -> Lark:
         transformer=_Tree(),
         maybe_placeholders=False,
     )
+
+
+def read(text: str) -> Block | Header | int:
+    """What the grammar reads in one line, on line 1; the place from 0 where it stops if it cannot."""
+    try:
+        node: Block | Header = line_parser().parse(text)  # type: ignore[assignment]  # the transformer's result
+    except UnexpectedInput as stop:
+        at = stop.token.start_pos if isinstance(stop, UnexpectedToken) else stop.pos_in_stream
+        ended = isinstance(stop, UnexpectedToken) and stop.token.type == "$END"
+        return len(text) if at is None or ended else at
+    return node

@@ -14,19 +14,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
-from lark.exceptions import UnexpectedInput, UnexpectedToken
-
 from nccompile.parser.faults import Fault, explain
-from nccompile.parser.grammar import line_parser
 from nccompile.parser.tree import Block, Header, Word
 from nccompile.source import Source
 
-__all__ = ["MAX_LINE", "Node", "ReadSource", "Unread", "plain_block", "read_by_grammar", "read_line"]
+__all__ = [
+    "MAX_LINE",
+    "Node",
+    "ReadSource",
+    "Unread",
+    "plain_block",
+    "plain_header",
+    "read_by_grammar",
+    "read_line",
+]
 
 MAX_LINE = 65_536
 """Longest line that is read, in characters; no program that a person or a post-processor wrote has one."""
 
 _WORD = r"[A-MO-Za-mo-z][+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+_PLAIN_HEADER = re.compile(r"% ?([A-Za-z0-9_.-]*)")
 _PLAIN = re.compile(rf"(?:[Nn][0-9]+|{_WORD})(?: {_WORD})*")
 _NUMBER_FIRST = re.compile(r"[ \t/]*([Nn])([0-9]+)(?![0-9.])")
 
@@ -51,7 +58,15 @@ class ReadSource(Source):
 
 def read_line(line: int, text: str) -> Node:
     """The node of one line."""
+    if text[:1] == "%":
+        return plain_header(line, text) or read_by_grammar(line, text)
     return plain_block(line, text) or read_by_grammar(line, text)
+
+
+def plain_header(line: int, text: str) -> Header | None:
+    """The header of a line such as `% bracket`; None for every other line."""
+    found = _PLAIN_HEADER.fullmatch(text) if len(text) <= MAX_LINE else None
+    return None if found is None else Header(found[1], line, 1, len(text.rstrip()) + 1)
 
 
 def plain_block(line: int, text: str) -> Block | None:
@@ -79,12 +94,11 @@ def read_by_grammar(line: int, text: str) -> Node:
     text = text.removesuffix("\x1a")  # the end-of-file mark of old systems
     if not text or text.isspace():
         return None
-    try:
-        node: Block | Header = line_parser().parse(text)  # type: ignore[assignment]  # the transformer's result
-    except UnexpectedInput as stop:
-        at = stop.token.start_pos if isinstance(stop, UnexpectedToken) else stop.pos_in_stream
-        ended = isinstance(stop, UnexpectedToken) and stop.token.type == "$END"
-        return Unread(explain(text, len(text) if at is None or ended else at), _unsound(line, text))
+    from nccompile.parser.grammar import read  # noqa: PLC0415 - plain programs start without Lark
+
+    node = read(text)
+    if isinstance(node, int):
+        return Unread(explain(text, node), _unsound(line, text))
     return _placed(node, line)
 
 
