@@ -178,6 +178,10 @@ def test_wrong_usage(command: Command, tmp_path: Path, arguments: list[str]) -> 
     _assert_refused(command(*arguments), 2, tmp_path, set())
 
 
+def test_a_device_is_no_program(command: Command, tmp_path: Path) -> None:
+    _assert_refused(command("compile", "/dev/zero", "-o", "p.ncq"), 2, tmp_path, set())
+
+
 def test_the_output_is_not_the_input(command: Command, program: Path, tmp_path: Path) -> None:
     before = program.read_bytes()
     _assert_refused(command("compile", program, "-o", program), 2, tmp_path, {"part.nc"})

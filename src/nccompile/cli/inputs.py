@@ -90,6 +90,8 @@ def read_program(path: Path) -> Source:
         return Source.from_stream("<stdin>", sys.stdin.buffer)
     if is_queue(path):
         raise UsageError(f"{path} is an OutQueue, not a part program: it was compiled already")
+    if path.is_char_device() or path.is_block_device():
+        raise UsageError(f"{path} is a device, not a part program; - reads standard input")
     try:
         return Source.read(path)
     except OSError as error:
