@@ -77,6 +77,18 @@ def test_an_interrupt_leaves_no_file(tmp_path: Path, number: signal.Signals, cod
     assert [path.name for path in tmp_path.iterdir()] == ["p.nc"]
 
 
+def test_a_program_from_a_pipe_keeps_its_first_bytes(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe.nc"
+    os.mkfifo(pipe)
+    process = subprocess.Popen(
+        [*NCCOMPILE, "dump", "--format", "csv", str(pipe)], stdout=subprocess.PIPE, text=True
+    )
+    pipe.write_text("% pipe\nN10 G1 X7 F50\n")
+    out, _ = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert "line,0.0,0.0,0.0,7.0,0.0,0.0" in out
+
+
 def test_an_internal_error_is_one_line(tmp_path: Path) -> None:
     """A bug is reported in one line, and shows its traceback only when asked to."""
     program = _long_program(tmp_path / "p.nc", 1)

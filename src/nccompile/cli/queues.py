@@ -22,7 +22,7 @@ def read_queue(path: Path) -> ncq.Queue:
 
 def is_queue(path: Path) -> bool:
     """Whether a path is meant as an OutQueue: by its name or, whatever it is called, its first bytes."""
-    if path == STDIN:
+    if path == STDIN or path.is_fifo():  # a look into a pipe would take its bytes away
         return False
     if path.suffix.lower() == ".ncq":
         return True
