@@ -193,6 +193,24 @@ class LargeSource(Source):
             return ""
         return next(self.each_line(number - 1), "")
 
+    def line_at(self, place: int) -> int:
+        """The number of the line that a place of the file lies in."""
+        at = max(bisect_right(self._known[1], place) - 1, 0)
+        ends, cr = 0, False
+        for begin in range(self._known[1][at], place, _PART):
+            part = self.read_at(begin, min(_PART, place - begin))
+            ends += part.count(b"\n") + part.count(b"\r") - part.count(b"\r\n") - (cr and part[:1] == b"\n")
+            cr = part.endswith(b"\r")
+        return self._known[0][at] + ends
+
+    def line_start(self, place: int) -> bytes:
+        """The bytes between a place of the file and the start of its line, at most `MOST_LINE` of them."""
+        begin, found = place, b""
+        while begin > self.begin and len(found) < MOST_LINE and b"\n" not in found and b"\r" not in found:
+            begin = max(begin - _PART, self.begin)
+            found = self.read_at(begin, place - begin)
+        return found[max(found.rfind(b"\n"), found.rfind(b"\r")) + 1 :]
+
     def _raw_lines(self, place: int, number: int) -> Iterator[bytes]:
         rest = b""
         while part := self.read_at(place, _PART):

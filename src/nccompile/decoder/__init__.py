@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from nccompile.decoder.din66025 import Din66025
 from nccompile.decoder.options import DecodeOptions
 from nccompile.diagnostics import Diagnostics
+from nccompile.kernels import LARGE, expect_work
 from nccompile.parser import read_header
-from nccompile.source import Source
+from nccompile.source import LargeSource, Source
 from nccompile.toolpath.columns import Toolpath
 
 __all__ = ["DecodeOptions", "Decoded", "decode"]
@@ -36,5 +37,7 @@ class Decoded:
 
 def decode(source: Source, options: DecodeOptions, diagnostics: Diagnostics) -> Decoded:
     """Starts decoding a DIN 66025 program; memory is that of a chunk, or of the blocks if there are jumps."""
+    if isinstance(source, LargeSource):
+        expect_work(LARGE)
     header = read_header(source)
     return Decoded(Din66025(source, options, diagnostics), "" if header is None else header.name)

@@ -81,9 +81,14 @@ class ChunkBuilder:
     def __len__(self) -> int:
         return self.first + self.rows
 
+    @property
+    def room(self) -> int:
+        """Rows that the columns can take."""
+        return len(self.columns.kind)
+
     def reserve(self) -> None:
         """Makes sure that there is room for another row."""
-        if self.rows == len(self.columns.kind):
+        if self.rows == self.room:
             full = self.columns
             self.columns = Columns(2 * self.rows, len(self.axes))
             self.columns.take_over(full, slice(0, self.rows), slice(0, self.curves))

@@ -88,6 +88,11 @@ class Core:
         modal.position = target
         return self.path.add(row, target, curve)
 
+    @property
+    def has_jump(self) -> bool:
+        """Whether a set position is open."""
+        return self._jump is not None
+
     def set_position(self, target: list[float], line: int) -> None:
         """Sets the position without motion: the start of the path, or a jump (SoftMotion §3.2, G92).
 

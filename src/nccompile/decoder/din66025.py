@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
+from contextlib import closing
 
+from nccompile.decoder.columnar import Runs
 from nccompile.decoder.core import Core
 from nccompile.decoder.flow import Flow
 from nccompile.decoder.motion import Motion
@@ -13,9 +15,12 @@ from nccompile.decoder.tables import Group
 from nccompile.decoder.variables import INT_MAX, INT_MIN
 from nccompile.decoder.words import Statement, evaluate, set_modal
 from nccompile.diagnostics import Diagnostics
-from nccompile.parser import Block, parse
-from nccompile.source import Source
-from nccompile.toolpath.columns import AXIS_LETTERS, EventKind, Kind, Toolpath
+from nccompile.kernels import compiled
+from nccompile.parser import Block, Reader, parse, report_control
+from nccompile.parser.scanner import Table, survey, tables
+from nccompile.source import LargeSource, Source
+from nccompile.threads import ahead
+from nccompile.toolpath.columns import ADDITIONAL, AXIS_LETTERS, EventKind, Kind, Toolpath
 
 __all__ = ["Din66025", "axes_of"]
 
@@ -30,35 +35,92 @@ _JUMP = re.compile(r"[Gg](?:0*20(?![0-9])|\$)")
 
 def axes_of(text: str, options: DecodeOptions) -> tuple[str, ...]:
     """The axes of a program: X Y Z, and those of the others that it or the start position names."""
-    named = {letter.upper() for letter in _AXIS_WORD.findall(text) if letter} | {
-        key.upper() for key in options.start
-    }
+    return _axes({letter.upper() for letter in _AXIS_WORD.findall(text)}, options)
+
+
+def _axes(letters: Set[str], options: DecodeOptions) -> tuple[str, ...]:
+    named = letters | {key.upper() for key in options.start}
     return tuple(letter for letter in AXIS_LETTERS if letter in "XYZ" or letter in named)
 
 
 class Din66025:
     """Decodes one program; `chunks` may be iterated once."""
 
-    def __init__(self, source: Source, options: DecodeOptions, diagnostics: Diagnostics) -> None:
-        jumps = _JUMP.search(source.text) is not None
-        self.axes = axes_of(source.text, options)
+    def __init__(
+        self,
+        source: Source,
+        options: DecodeOptions,
+        diagnostics: Diagnostics,
+        *,
+        columnar: bool | None = None,
+    ) -> None:
+        """`columnar`: whether runs of plain blocks are decoded as columns; None: if the source is large."""
+        self._source, self._diagnostics = source, diagnostics
+        self._stream: LargeSource | None = None
+        self._control = -1
+        if isinstance(source, LargeSource) and (compiled() if columnar is None else columnar):
+            found = survey(source, ADDITIONAL)
+            jumps, self._control = found.jumps, found.control
+            self.axes = _axes(found.letters, options)
+            self._stream = None if jumps or options.ignore else source
+        else:
+            jumps = _JUMP.search(source.text) is not None
+            self.axes = axes_of(source.text, options)
         self._core = Core(source, self.axes, options, diagnostics, jumps)
+        self._jumps = jumps
         self._flow = Flow(self._core, parse(source, diagnostics), jumps)
         self._motion = Motion(self._core)
         self._skip = options.skip_blocks
 
     def chunks(self) -> Iterator[Toolpath]:
         """The toolpath, in chunks whose borders are the only thing that depends on their size."""
-        core, path = self._core, self._core.path
+        yield from self._statements() if self._stream is None else self._columns(self._stream)
+        self._motion.spline.close(None)
+        self._core.flush_position()
+        self._motion.marks.finish()
+        yield from self._core.path.finish()
+
+    def _statements(self) -> Iterator[Toolpath]:
+        path = self._core.path
         for block in self._flow:
-            if not (block.skip and self._skip):
-                self._run(block)
+            self._take(block)
             if path.is_full:
                 yield from path.ready()
-        self._motion.spline.close(None)
-        core.flush_position()
-        self._motion.marks.finish()
-        yield from path.finish()
+
+    def _columns(self, source: LargeSource) -> Iterator[Toolpath]:
+        if self._control >= 0:
+            report_control(source, self._diagnostics, self._control)
+            return
+        reader = Reader(source, self._diagnostics)
+        runs = Runs(self._core, self._motion)
+        with closing(ahead(tables(source))) as stream:
+            for table in stream:
+                yield from self._table(table, reader, runs)
+                if reader.stopped:
+                    return
+        reader.finish()
+
+    def _table(self, table: Table, reader: Reader, runs: Runs) -> Iterator[Toolpath]:
+        path = self._core.path
+        at = 0
+        while at < table.blocks and not reader.stopped:
+            if reader.any_block:
+                at = runs.run(table, at)
+                out_of_room = path.rows == path.room
+                if path.is_full:
+                    yield from path.ready()
+                if at == table.blocks:
+                    break
+                if out_of_room:
+                    continue
+            block = reader.take(int(table.block_line[at]), table.text(at))
+            if block is not None:
+                self._take(block)
+            at += 1
+
+    def _take(self, block: Block) -> None:
+        if not (block.skip and self._skip):
+            self._run(block)
 
     def _run(self, block: Block) -> None:
         core = self._core

@@ -55,6 +55,11 @@ class Marks:
         if on is not None and on.marked:
             self._mark_last(code)
 
+    @property
+    def waiting(self) -> bool:
+        """Whether the next path object gets a start mark."""
+        return not all(on.marked for on in self._on.values())
+
     def drive(self, row: int) -> None:
         """Marks a new path object."""
         for on in self._on.values():

@@ -43,6 +43,11 @@ class Motion:
         self.spline = SplineRun(core)
         self.marks = Marks(core)
 
+    @property
+    def warns_of_feed(self) -> bool:
+        """Whether a feed move before any feed rate is still to be reported."""
+        return not self._warned_feed and not self._core.incomplete
+
     def drive(self, statement: Statement) -> None:
         """Executes a block whose instruction is G0 to G9."""
         core, instruction = self._core, statement.instruction
@@ -51,7 +56,7 @@ class Motion:
         values = statement.values
         if MOTION.isdisjoint(values) and not statement.switches:
             return
-        if core.modal.feed == 0.0 and code != 0 and not self._warned_feed and not core.incomplete:
+        if core.modal.feed == 0.0 and code != 0 and self.warns_of_feed:
             self._warned_feed = True
             core.warn(
                 "NC101", f"feed move G{code} before any feed rate; the machine's default holds",

@@ -42,6 +42,11 @@ class SplineRun:
         self._core = core
         self._open: _Piece | None = None
 
+    @property
+    def is_open(self) -> bool:
+        """Whether the last piece waits for what follows it."""
+        return self._open is not None
+
     def point(self, statement: Statement, target: list[float], dz: float) -> int:
         """Adds the piece to a new point; returns its row.
 

@@ -34,11 +34,21 @@ Floats = npt.NDArray[np.float64]
 FEED, ACCEL, DECEL, RADIUS, LEAVE_X, LEAVE_Y, NUMBERS = 0, 1, 2, 3, 4, 5, 6
 """Places in the state of numbers, and its size."""
 
-DRIVE, ABSOLUTE, CENTRE_ABSOLUTE, NEEDS_FEED, LEAVING, LAST_DRIVE, ROWS, CURVES, FLAGS = 0, 1, 2, 3, 4, 5, 6, 7, 8
+DRIVE, ABSOLUTE, CENTRE_ABSOLUTE, NEEDS_FEED, LEAVING, LAST_DRIVE, ROWS, CURVES, FLAGS = (
+    0,
+    1,
+    2,
+    3,
+    4,
+    5,
+    6,
+    7,
+    8,
+)
 """Places in the state of whole numbers, and its size.  NEEDS_FEED: a feed move without feed must be reported."""
 
 SAME, FREE, ALONG, AROUND = 0, 1, 2, 3
-"""LEAVING: how the last segment ends: as before the run, in no direction, along LEAVE_X, LEAVE_Y, or as the last curve."""
+"""LEAVING, how the last segment ends: as before the run, in no direction, along LEAVE_X, LEAVE_Y, as the last curve."""
 
 _N, _D, _E, _F, _G, _I, _J, _R = 78, 68, 69, 70, 71, 73, 74, 82
 _I_BIT, _J_BIT, _R_BIT, _F_BIT, _D_BIT = 1 << 8, 1 << 9, 1 << 17, 1 << 5, 1 << 3
@@ -49,7 +59,7 @@ _SHAPE = _I_BIT | _J_BIT | _R_BIT
 def decode(
     first: int, blocks: int, block_line: Ints, block_word: Ints, plain: Flags, letter: Flags, value: Floats,
     column: Longs, axis_bits: int, limit: float, coincident: float, mismatch: float, ratio: float, most: float,
-    numbers: Floats, flags: Longs, position: Floats, target: Floats, goal: Floats, arc: Floats,
+    numbers: Floats, flags: Longs, position: Floats, goal: Floats, arc: Floats,
     kind: Flags, targets: Floats, curve: Ints, length: Floats, feed: Floats, accel: Floats, decel: Floats,
     radius: Floats, line: Ints, planes: Flags, parameters: Floats,
 ) -> int:  # fmt: skip
@@ -131,11 +141,9 @@ def decode(
                 if w != begin:
                     good = False
                     break
-                if v == 0.0 or v == 1.0 or v == 2.0 or v == 3.0:
-                    code = int(v)
-                elif v == 90.0 or v == 91.0 or v == 98.0 or v == 99.0:
-                    code = int(v)
-                else:
+                code = int(v)
+                known = 0 <= code <= 3 or 90 <= code <= 91 or 98 <= code <= 99
+                if v != code or not known:
                     good = False
                     break
             elif name == _F:

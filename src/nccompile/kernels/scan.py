@@ -34,7 +34,19 @@ POWERS = np.array([float(f"1e{n}") for n in range(23)])
 
 _EXACT = 9007199254740992  # 2^53
 _DIGITS = 18  # so many digits fit an int64
-_TAB, _LF, _VT, _FF, _CR, _BLANK, _OPEN, _CLOSE, _PLUS, _MINUS, _POINT = 9, 10, 11, 12, 13, 32, 40, 41, 43, 45, 46
+_TAB, _LF, _VT, _FF, _CR, _BLANK, _OPEN, _CLOSE, _PLUS, _MINUS, _POINT = (
+    9,
+    10,
+    11,
+    12,
+    13,
+    32,
+    40,
+    41,
+    43,
+    45,
+    46,
+)
 _ZERO, _NINE = 48, 57
 LETTER_N = 78
 """The letter of block numbers, as all letters here in upper case."""
@@ -42,14 +54,14 @@ LETTER_N = 78
 
 @kernel
 def scan(
-    data: Bytes, begin: int, end: int, final: int, line: int, powers: Floats,
+    data: Bytes, begin: int, end: int, line: int, powers: Floats,
     block_line: Ints, block_begin: Ints, block_end: Ints, block_word: Ints, plain: Flags,
     letter: Flags, value: Floats, place: Ints, hard: Ints, counts: Longs,
 ) -> int:  # fmt: skip
-    """Scans the whole lines of data[begin:end]; returns the place after the last one it took.
+    """Scans the lines of data[begin:end], the last of which may lack its end; returns the place after those it took.
 
-    Args:     data: Shape (bytes,), signed so that all arithmetic is;  final: 1 if no byte follows `end`, so the
-              last line needs no line end;  line: number of the first line;  powers: `POWERS`.
+    Args:     data: Shape (bytes,), signed so that all arithmetic is;  line: number of the first line;
+              powers: `POWERS`.
     Writes:   a row a block: line, place of the line and of its end (without the line end), row of its first
               word, whether it is plain; block_word has one more row.  A row a word: letter in upper case, value,
               place of the letter.  hard: the words whose value is left to `float`.
@@ -176,22 +188,8 @@ def scan(
                     break
                 i += 1
         stop = i
-        if i >= end:
-            if final == 0:
-                words = first
-                hards = first_hard
-                break
-        elif int(data[i]) == _CR:
-            if i + 1 < end:
-                i += 2 if int(data[i + 1]) == _LF else 1
-            elif final == 0:
-                words = first
-                hards = first_hard
-                break
-            else:
-                i += 1
-        else:
-            i += 1
+        if i < end:
+            i += 2 if int(data[i]) == _CR and i + 1 < end and int(data[i + 1]) == _LF else 1
         if not good or words > first:
             block_line[blocks] = line
             block_begin[blocks] = start
