@@ -23,9 +23,7 @@ from typer.core import TyperCommand
 from nccompile.cli.compile import compile_program
 from nccompile.cli.dump import dump
 from nccompile.cli.explain import explain
-from nccompile.cli.fmt import format_programs
 from nccompile.cli.info import info
-from nccompile.cli.lint import lint_programs
 from nccompile.cli.machine import check
 from nccompile.cli.plot import plot
 from nccompile.cli.run import run_program
@@ -87,8 +85,6 @@ app.command("sample", cls=Guarded)(sample)
 app.command("run", cls=Guarded)(run_program)
 app.command("plot", cls=Guarded)(plot)
 app.command("explain", cls=Guarded)(explain)
-app.command("lint", cls=Guarded)(lint_programs)
-app.command("fmt", cls=Guarded)(format_programs)
 _machine.command("check", cls=Guarded)(check)
 _machine.callback()(lambda: None)
 app.add_typer(_machine, name="machine")
