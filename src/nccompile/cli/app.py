@@ -23,6 +23,8 @@ from typer.core import TyperCommand
 from nccompile.cli.compile import compile_program
 from nccompile.cli.dump import dump
 from nccompile.cli.explain import explain
+from nccompile.cli.export_dxf import export_dxf
+from nccompile.cli.import_dxf import import_dxf
 from nccompile.cli.info import info
 from nccompile.cli.machine import check
 from nccompile.cli.plot import plot
@@ -85,6 +87,8 @@ app.command("sample", cls=Guarded)(sample)
 app.command("run", cls=Guarded)(run_program)
 app.command("plot", cls=Guarded)(plot)
 app.command("explain", cls=Guarded)(explain)
+app.command("import-dxf", cls=Guarded)(import_dxf)
+app.command("export-dxf", cls=Guarded)(export_dxf)
 _machine.command("check", cls=Guarded)(check)
 _machine.callback()(lambda: None)
 app.add_typer(_machine, name="machine")

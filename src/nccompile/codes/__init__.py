@@ -7,14 +7,14 @@ again; the module of a stage holds its pages.
 
 from __future__ import annotations
 
-from nccompile.codes import correction, dynamics, geometry, limits, runtime, syntax, words
+from nccompile.codes import correction, dynamics, geometry, imports, limits, runtime, syntax, words
 from nccompile.codes.page import Page
 
 __all__ = ["PAGES", "Page"]
 
 PAGES: dict[str, Page] = {
     page.code: page
-    for stage in (syntax, words, geometry, correction, limits, dynamics, runtime)
+    for stage in (syntax, words, geometry, correction, limits, dynamics, imports, runtime)
     for page in stage.PAGES
 }
 """All pages by code, in the order of the codes."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 from math import pi
 
 import numpy as np
+import numpy.typing as npt
 
 from nccompile.geometry.biarcs import arcs_of_cubics
 from nccompile.importers.dxf.grid import Indices
@@ -41,7 +42,7 @@ def arcs_for_cubics(paths: Paths, tolerance: float) -> Paths:
     return _exchange(paths, cubic, made.replace(kind=kind, p=rows), source)
 
 
-def arc_centres(start: Complexes, end: Complexes, sweep: np.typing.NDArray[np.float64]) -> Complexes:
+def arc_centres(start: Complexes, end: Complexes, sweep: npt.NDArray[np.float64]) -> Complexes:
     """Centres of the arcs over the chords start -> end with these sweeps: M + i chord / (2 tan(sweep / 2))."""
     centres: Complexes = 0.5 * (start + end) + 0.5j * (end - start) / np.tan(0.5 * sweep)
     return centres
@@ -57,10 +58,30 @@ def on_grid(paths: Paths, decimals: int) -> Paths:
     pieces = paths.pieces
     start, end = round_to(pieces.start, decimals), round_to(pieces.end, decimals)
     full = pieces.is_full
+    circle = full & (pieces.kind == PieceKind.ARC)
+    if circle.any():
+        pieces, start = _circles_on_grid(pieces, circle, start, decimals)
     end = np.where(full, start, end)
     keep = (start != end) | full | (pieces.kind == PieceKind.POINT)
     kept = similar(pieces.take(keep), start[keep], end[keep])
     return _rebuild(paths, kept, np.flatnonzero(keep))
+
+
+def _circles_on_grid(
+    pieces: Pieces, circle: npt.NDArray[np.bool_], start: Complexes, decimals: int
+) -> tuple[Pieces, Complexes]:
+    """Full circles with centre and radius rounded, so that all four quarter points are on the grid."""
+    p = pieces.p.copy()
+    p[circle, :2] = np.round(p[circle, :2], decimals) + 0.0
+    p[circle, 2] = np.maximum(np.round(p[circle, 2], decimals), 10.0**-decimals)
+    p[circle, 3] = np.where(np.abs(np.sin(2 * p[circle, 3])) < 1e-9, p[circle, 3], 0.0)
+    p[circle, 3] = np.round(p[circle, 3] / (pi / 2)) * (pi / 2)
+    begin = p[circle, 0] + 1j * p[circle, 1] + p[circle, 2] * np.round(np.exp(1j * p[circle, 3]))
+    start = start.copy()
+    start[circle] = begin
+    at = pieces.start.copy()
+    at[circle] = begin
+    return pieces.replace(p=p, start=at, end=np.where(circle, at, pieces.end)), start
 
 
 def round_to(z: Complexes, decimals: int) -> Complexes:

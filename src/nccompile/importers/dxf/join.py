@@ -21,7 +21,7 @@ from nccompile.importers.dxf.clean import Place
 from nccompile.importers.dxf.grid import Indices, close_pairs, cluster
 from nccompile.importers.dxf.pieces import PieceKind, Pieces, lengths, line_row, reverse, similar
 
-__all__ = ["COINCIDENT", "Paths", "join_pieces"]
+__all__ = ["COINCIDENT", "Paths", "join_pieces", "meet"]
 
 COINCIDENT = 1e-4
 """Ends closer than this [mm] are the same point: the last decimal of what is written."""
@@ -80,7 +80,7 @@ def join_pieces(pieces: Pieces, group: Indices, gap: float) -> tuple[Paths, list
     places = [p._replace(layer=int(pieces.layer[head[p.layer // 2]])) for p in places]
     order, flipped, first, closed = _walk(partner, alone)
     paths = _lay_out(pieces, head, tail, order, flipped, first, closed, group)
-    return _meet(paths, gap), places
+    return meet(paths, gap), places
 
 
 def _runs(pieces: Pieces) -> Indices:
@@ -194,7 +194,7 @@ def _lay_out(
     return Paths(laid, rows, closed, group[index[rows[:-1]]] if len(rows) > 1 else np.zeros(0, np.int64))
 
 
-def _meet(paths: Paths, gap: float) -> Paths:
+def meet(paths: Paths, gap: float) -> Paths:
     """The paths with every piece starting exactly where the one before it ends.
 
     Both pieces at a gap are turned and scaled a little so that they meet half-way; where that would move a piece

@@ -1,0 +1,48 @@
+"""`nccompile export-dxf`: a toolpath as a drawing, to be checked in a CAD program."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from nccompile.cli.options import Define, DiagnosticsFormat, Input, MachineFile, Report, SkipBlocks, Start
+
+__all__ = ["export_dxf"]
+
+
+def export_dxf(
+    path: Input,
+    machine: MachineFile = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", metavar="FILE.dxf", help="The drawing; default: INPUT.dxf."),
+    ] = None,
+    start: Start = None,
+    define: Define = None,
+    skip_blocks: SkipBlocks = False,
+    diagnostics: DiagnosticsFormat = Report.TEXT,
+) -> None:
+    """Draw a program or an OutQueue as DXF: rapids, feed moves and switch points on layers of their own.
+
+    Of a program both stages are drawn: as programmed, and on layers with the suffix _PASSES as the passes
+    changed it, if they did.
+    """
+    from nccompile.backend.dxf import DxfExport
+    from nccompile.backend.files import replacing
+    from nccompile.cli.dxf_stages import stages
+
+    place = output if output is not None else path.with_suffix(".dxf")
+    drawing = DxfExport()
+    settings = (start, define, skip_blocks)
+    count = sum(
+        drawing.add(chunks, suffix) for suffix, chunks in stages(path, machine, settings, diagnostics)
+    )
+    text = io.StringIO()
+    drawing.write(text)
+    with replacing(place) as (file, commit):
+        file.write(text.getvalue().encode("utf-8", "surrogateescape"))
+        commit()
+    print(f"{place}: {count} entities")
