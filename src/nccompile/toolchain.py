@@ -22,7 +22,8 @@ from nccompile.machine.limits import check_axes, check_travel
 from nccompile.machine.model import Machine
 from nccompile.passes.check_marks import check_marks
 from nccompile.passes.velocity import PlanSettings, plan, row_times
-from nccompile.source import Source
+from nccompile.source import LargeSource, Source
+from nccompile.threads import ahead
 from nccompile.toolpath import Toolpath
 from nccompile.toolpath.verify import verify_chain
 
@@ -99,9 +100,12 @@ class Compilation:
 
     def write(self, path: Path) -> ncq.Meta | None:
         """Writes the OutQueue; no file is left, and None returned, if the program has errors."""
+        chunks = self.planned()
+        if isinstance(self.source, LargeSource):
+            chunks = ahead(chunks)  # the next chunks are made while this one is written
         return ncq.write(
             path,
-            self.planned(),
+            chunks,
             self.provenance(),
             job_time=lambda: self.time.seconds,
             keep=lambda: not self.diagnostics.errors,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from nccompile.decoder.builder import ChunkBuilder, Row
-from nccompile.decoder.options import DecodeOptions
+from nccompile.decoder.options import LARGE_CHUNK, DecodeOptions
 from nccompile.decoder.variables import Variables
 from nccompile.diagnostics import Diagnostics, Severity
 from nccompile.geometry import Curve
-from nccompile.source import Source, Span
-from nccompile.toolpath.columns import EventKind, Kind
+from nccompile.source import LargeSource, Source, Span
+from nccompile.toolpath.columns import CHUNK, EventKind, Kind
 
 __all__ = ["LIMIT", "Core", "Modal"]
 
@@ -54,7 +54,8 @@ class Core:
         given = {letter.upper(): float(value) for letter, value in options.start.items()}
         start = [given.get(letter, 0.0) for letter in axes]
         self.modal = Modal(start)
-        self.path = ChunkBuilder(axes, start, options.chunk)
+        usual = LARGE_CHUNK if isinstance(source, LargeSource) else CHUNK
+        self.path = ChunkBuilder(axes, start, options.chunk or usual)
         self.variables = Variables(options.defines)
         self.incomplete = False
         """A block was left out because of an error: what it would have set is unknown."""
