@@ -2,6 +2,7 @@
 # make test    the tests
 # make check   format, lint, types, layering and the tests
 # make bench   the benchmarks
+# make docs     writes the pages of the diagnostic codes anew
 # make accept  rewrites the golden files; read the difference before committing it
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3 || echo python)
@@ -10,7 +11,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 INPUTS := pyproject.toml README.md
 
-.PHONY: demo test check lint bench accept clean
+.PHONY: demo test check lint bench docs accept clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.installed
@@ -29,6 +30,9 @@ lint: $(VENV)/.installed-dev
 
 bench: $(VENV)/.installed-dev
 	$(BIN)/python -m benchmarks
+
+docs: $(VENV)/.installed-dev
+	$(BIN)/python -m tools.rule_pages
 
 accept: $(VENV)/.installed-dev
 	NCCOMPILE_ACCEPT=1 $(BIN)/python -m pytest tests/golden

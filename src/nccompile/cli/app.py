@@ -24,8 +24,10 @@ from nccompile.cli.compile import compile_program
 from nccompile.cli.dump import dump
 from nccompile.cli.explain import explain
 from nccompile.cli.export_dxf import export_dxf
+from nccompile.cli.fmt import format_programs
 from nccompile.cli.import_dxf import import_dxf
 from nccompile.cli.info import info
+from nccompile.cli.lint import lint_programs
 from nccompile.cli.machine import check
 from nccompile.cli.plot import plot
 from nccompile.cli.run import run_program
@@ -87,6 +89,8 @@ app.command("sample", cls=Guarded)(sample)
 app.command("run", cls=Guarded)(run_program)
 app.command("plot", cls=Guarded)(plot)
 app.command("explain", cls=Guarded)(explain)
+app.command("lint", cls=Guarded)(lint_programs)
+app.command("fmt", cls=Guarded)(format_programs)
 app.command("import-dxf", cls=Guarded)(import_dxf)
 app.command("export-dxf", cls=Guarded)(export_dxf)
 _machine.command("check", cls=Guarded)(check)

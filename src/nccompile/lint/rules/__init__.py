@@ -1,0 +1,1 @@
+"""One file a rule; the docstring of its class is its page."""

@@ -1,0 +1,139 @@
+"""The same findings as `compile`, selection, settings and silencing comments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+
+from nccompile.codes import PAGES
+from nccompile.diagnostics import render
+from nccompile.errors import UsageError
+from nccompile.lint.config import Config, config_for, parse_config
+from nccompile.lint.engine import lint
+from nccompile.lint.registry import RULES
+from nccompile.source import Source
+from nccompile.toolchain import Compilation
+from tests.lint.programs import OPTIONS, SAMPLES, checked, codes, programs, read
+
+RULE_CODES = {rule.code for rule in RULES}
+TEXTS = [page.bad for page in PAGES.values() if page.bad] + [
+    page.good for page in PAGES.values() if page.good
+]
+
+
+def compiled(source: Source) -> list[str]:
+    compilation = Compilation(source, OPTIONS)
+    for _ in compilation.planned():
+        pass
+    return [render(found, source) for found in compilation.diagnostics]
+
+
+def linted(source: Source) -> list[str]:
+    report = lint(source, OPTIONS, Config())
+    return [render(found, source) for found in report.ordered() if found.code not in RULE_CODES]
+
+
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_samples_give_what_compile_gives_byte_for_byte(path: Path) -> None:
+    assert linted(read(path)) == compiled(read(path))
+
+
+def test_pages_give_what_compile_gives_byte_for_byte() -> None:
+    for text in TEXTS:
+        source = Source("a.nc", text)
+        assert linted(source) == compiled(source)
+
+
+@settings(max_examples=40, deadline=None)
+@given(programs)
+def test_random_programs_give_what_compile_gives(text: str) -> None:
+    source = Source("a.nc", text)
+    assert linted(source) == compiled(source)
+
+
+def test_past_the_limit_findings_are_counted_as_compile_does() -> None:
+    text = "% a\nN10 G1 F20\n" + "\n".join(f"N{n} X{n} K1" for n in range(20, 50))
+    report = checked(text, Config(), limit=None)
+    assert len([d for d in report.ordered() if d.code == "NC105"]) == 20
+    assert report.diagnostics.counts["NC105"] == 30
+    assert len([d for d in checked(text).ordered() if d.code == "NC105"]) == 30
+
+
+TWO = "% a\nN10 G1 X1 F20\nN10 G1 X2 F20"
+
+
+def test_codes_are_selected_by_their_first_characters() -> None:
+    assert codes(TWO, Config()) == ["NC052", "NC151"]
+    assert codes(TWO, Config(select=("NC1",))) == ["NC151"]
+    assert codes(TWO, Config(ignore=("NC1",))) == ["NC052"]
+    assert codes(TWO, Config(select=("NC151",), ignore=("NC1",))) == ["NC151"]
+    assert codes(TWO, Config(ignore=("NC15",), extend_select=("NC151",))) == ["NC052", "NC151"]
+
+
+def test_rules_that_are_off_come_by_their_full_code() -> None:
+    text = "% a\nN10 G1 X1 Y1 F20\nN20 G1 X2 Y1"
+    assert codes(text, Config(select=("NC",))) == []
+    assert codes(text, Config(extend_select=("NC153",))) == ["NC153"]
+
+
+def test_errors_cannot_be_hidden() -> None:
+    assert codes("% a\nN10 G7 (nc: ignore)", Config(ignore=("NC",))) == ["NC102"]
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [
+        ("% a\nN10 G1 X1 F20\nN10 G1 X2 F20 (nc: ignore)", []),
+        ("% a\nN10 G1 X1 F20\nN10 G1 X2 F20 (nc: ignore[NC151])", ["NC052"]),
+        ("% a\nN10 G1 X1 F20\nN10 G1 X2 F20 (NC: Ignore[nc05, nc151])", []),
+        ("% a\nN10 G1 X1 F20\n(nc: ignore[NC052])\nN10 G1 X2 F20", ["NC151"]),
+        ("% a\n(nc: ignore-file[NC052])\nN10 G1 X1 F20\nN10 G1 X2 F20", ["NC151"]),
+        ("% a\nN10 G1 X1 F20 (nc: ignore)\nN10 G1 X2 F20", ["NC052", "NC151"]),
+    ],
+)
+def test_comments_silence(text: str, left: list[str]) -> None:
+    assert codes(text, Config()) == left
+
+
+def test_settings_come_from_the_nearest_file(tmp_path: Path) -> None:
+    inner = tmp_path / "jobs" / "today"
+    inner.mkdir(parents=True)
+    (tmp_path / "pyproject.toml").write_text('[tool.nccompile.lint]\nignore = ["NC05"]\n')
+    assert config_for(inner / "a.nc").ignore == ("NC05",)
+    (tmp_path / "jobs" / "pyproject.toml").write_text('[project]\nname = "other"\n')
+    assert config_for(inner / "a.nc").ignore == ("NC05",)
+    (tmp_path / "jobs" / "nccompile.toml").write_text(
+        'machine = "mill.toml"\n[lint]\nmin-segment = 0.01\n[format]\nstep = 5\n'
+    )
+    found = config_for(inner / "a.nc")
+    assert (found.ignore, found.min_segment, found.step) == ((), 0.01, 5)
+    assert found.machine == tmp_path / "jobs" / "mill.toml"
+    assert config_for(Path("/a.nc")) == Config()
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ({"lnit": {}}, "did you mean lint?"),
+        ({"lint": {"selct": []}}, "unknown key lint.selct; did you mean select?"),
+        ({"lint": []}, "[lint] must be a section"),
+        ({"lint": {"ignore": "NC1"}}, "must be a list of codes"),
+        ({"lint": {"ignore": ["X1"]}}, "must be a list of codes"),
+        ({"lint": {"min-segment": -1}}, "must be a length in mm"),
+        ({"format": {"step": 0}}, "from 1 to 1000"),
+        ({"machine": 1}, "must be the name of a file"),
+    ],
+)
+def test_wrong_settings_are_refused_with_the_key(table: dict[str, object], message: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        parse_config(table, "nccompile.toml", Path())
+    assert message in str(refused.value)
+    assert "nccompile.toml" in str(refused.value)
+
+
+def test_a_settings_file_that_is_not_toml_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "nccompile.toml").write_text("[lint\n")
+    with pytest.raises(UsageError, match="cannot be read"):
+        config_for(tmp_path / "a.nc")
