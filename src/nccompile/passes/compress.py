@@ -20,9 +20,9 @@ import numpy as np
 from nccompile.geometry.tolerance import COINCIDENT
 from nccompile.kernels import compress as kernels
 from nccompile.passes.base import Context, Flags, Pass, gather
-from nccompile.passes.edit import STARTS, STOPS, Links, Rows, compose
+from nccompile.passes.edit import STARTS, STOPS, Links, compose, linked
 from nccompile.passes.measure import deviation
-from nccompile.toolpath.columns import Floats, Kind, Toolpath
+from nccompile.toolpath.columns import Kind, Toolpath
 
 __all__ = ["Compress"]
 
@@ -96,27 +96,10 @@ def _merge(path: Toolpath, context: Context) -> tuple[Toolpath, int]:
     if keep.all():
         return path, open_from
     ends = np.flatnonzero(keep)
-    firsts = np.concatenate([[0], ends[:-1] + 1])
-    run = np.repeat(np.arange(len(ends)), np.diff(np.append(firsts, n)))
-    links = Links(np.arange(n), np.zeros(n), np.ones(n), run, *_shares(path, firsts, ends, run))
+    links, firsts = linked(path, ends, np.ones(len(ends)))
     merged = compose(
         path, firsts, path.kind[firsts], path.target[ends], path.curve[firsts], path.curves, links
     )
     if context.measure:
         context.report.deviate(deviation(path, merged, links))
     return merged, open_from
-
-
-def _shares(path: Toolpath, firsts: Rows, ends: Rows, run: Rows) -> tuple[Floats, Floats]:
-    """Which part of its run each row is; summed from the start of the run, whatever lies before it.
-
-    Only events ask for it, so runs without events are left at 0..1.
-    """
-    q0, q1 = np.zeros(len(path)), np.ones(len(path))
-    for r in np.unique(run[path.events.segment]):
-        pick = slice(int(firsts[r]), int(ends[r]) + 1)
-        way = np.cumsum(path.length[pick])
-        if pick.stop - pick.start > 1:
-            q1[pick] = way / way[-1]
-            q0[pick] = np.concatenate([[0.0], q1[pick][:-1]])
-    return q0, q1

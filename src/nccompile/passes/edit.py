@@ -19,7 +19,19 @@ import numpy.typing as npt
 from nccompile.toolpath.columns import Bytes, Curves, EventKind, Events, Floats, Ints, Kind, Mark, Toolpath
 from nccompile.toolpath.lengths import path_lengths
 
-__all__ = ["STARTS", "STOPS", "Draft", "Link", "Links", "Rows", "Shape", "compose", "is_motion", "place"]
+__all__ = [
+    "STARTS",
+    "STOPS",
+    "Draft",
+    "Link",
+    "Links",
+    "Rows",
+    "Shape",
+    "compose",
+    "is_motion",
+    "linked",
+    "place",
+]
 
 STARTS = int(Mark.TOOL_LEFT | Mark.TOOL_RIGHT | Mark.SMOOTH | Mark.ROUND | Mark.LOOP)
 """Marks that act from the start of their segment."""
@@ -155,6 +167,44 @@ def _events(source: Toolpath, links: Links) -> Events:
             (row, int(e.kind[j]), int(e.number[j]), position, float(e.k[j]), float(e.l[j]), int(e.o[j]))
         )
     return Events.from_rows(rows)
+
+
+def linked(path: Toolpath, rows: Rows, parts: Floats) -> tuple[Links, Rows]:
+    """The links of a stretch whose whole way is cut anew into pieces.
+
+    Args:     rows, parts: Shape (m,), the source row in which each piece ends, and at which part 0..1 of it;
+              ascending, the last is the end of the path.
+    Returns:  the links, and the source row in which each piece begins.
+
+    In a piece with events the parts are summed from its start, whatever lies before it, so that they do not depend
+    on how the path comes in chunks; elsewhere a sum over the whole stretch is good enough to measure by.
+    """
+    inner = parts < 1.0
+    row = np.concatenate([np.arange(len(path)), rows[inner]])
+    p1 = np.concatenate([np.ones(len(path)), parts[inner]])
+    order = np.lexsort((p1, row))
+    row, p1 = row[order], p1[order]
+    is_end = np.zeros(len(row), np.bool_)
+    is_end[np.searchsorted(row + 0.5 * p1, rows + 0.5 * parts)] = True
+    p0 = np.where(np.diff(row, prepend=-1) == 0, np.concatenate([[0.0], p1[:-1]]), 0.0)
+    piece: Rows = np.cumsum(is_end) - is_end
+    lasts = np.flatnonzero(is_end)
+    firsts = np.concatenate([[0], lasts[:-1] + 1]).astype(np.intp)
+    size = (p1 - p0) * path.length[row]
+    way = np.cumsum(size)
+    begin = (way - size)[firsts][piece]
+    total = way[lasts][piece] - begin
+    total = np.where(total > 0.0, total, 1.0)
+    q0 = np.clip((way - size - begin) / total, 0.0, 1.0)
+    q1 = np.clip((way - begin) / total, 0.0, 1.0)
+    alone = (firsts == lasts)[piece]
+    q0[alone], q1[alone] = 0.0, 1.0
+    for r in np.unique(piece[np.isin(row, path.events.segment) & ~alone]):
+        pick = slice(int(firsts[r]), int(lasts[r]) + 1)
+        own = np.cumsum(size[pick])
+        q1[pick] = own / own[-1]
+        q0[pick] = np.concatenate([[0.0], q1[pick][:-1]])
+    return Links(row, p0, p1, piece, q0, q1), row[firsts]
 
 
 @dataclass

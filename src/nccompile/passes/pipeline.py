@@ -23,6 +23,8 @@ from itertools import pairwise
 from nccompile.errors import UsageError
 from nccompile.passes.base import Context, Diagnose, Pass, Report
 from nccompile.passes.compress import Compress
+from nccompile.passes.fit_arcs import FitArcs
+from nccompile.passes.fit_splines import FitSplines
 from nccompile.passes.flatten import Flatten
 from nccompile.passes.limit_arc_feed import LimitArcFeed
 from nccompile.passes.move_start import MoveStart
@@ -39,6 +41,8 @@ ORDER: tuple[type[Pass], ...] = (
     MoveStart,
     Split,
     Compress,
+    FitArcs,
+    FitSplines,
     Flatten,
     LimitArcFeed,
 )

@@ -1,0 +1,383 @@
+"""A run of small lines becomes a C2 cubic spline: the kernel of the pass `fit-splines`.
+
+    S(tau) = sum c(i) B(i, tau)      cubic B-splines on the knots t(0) < t(1) < ... < t(K), tau: way along the chords
+
+     |   .-●-.       |      ●-.       Least squares for the vertices, weighted with the way they stand for; both
+     | ●'     '●-.   |  .-●'          ends exact.  With h the length of a span, its error is about C h⁴, so from
+     |/           '●-|-'              the error e(j) measured on each span
+     t(j)          t(j+1)                 N = sum (e(j) / tolerance)^(1/4)
+                                      spans are needed, at places where they all have the same error: knots
+    are spread by that density and the spline is solved again, until the tolerance holds, then with fewer.
+
+The error of a chord: its two vertices are e0, e1 off the spline (after one step to the nearest place), and
+between them the spline leaves the chord by at most |chord|² / 8 max|S''| more; so max(e0, e1) + sag bounds the
+distance of chord and spline piece both ways.
+
+Source:   C. de Boor, A Practical Guide to Splines, 1978, chapters X, XII (knots by equal error), XIV.
+"""
+
+from math import sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from nccompile.kernels import kernel
+
+__all__ = ["fit_spline"]
+
+Floats = npt.NDArray[np.float64]
+
+_ROUNDS = 12
+_FLOOR = 1e-3  # part of the tolerance below which an error says nothing of the span it needs
+_SMOOTH = 1e-10  # weight of second differences of the coefficients: a span without vertices is still defined
+_DENSE = 2  # spans a vertex: more would only follow rounding
+
+
+@kernel
+def _assemble(points: Floats, tau: Floats, t: Floats, spans: int, band: Floats, right: Floats) -> None:
+    """Normal equations of the least squares; t: padded knots, Shape (spans + 7,); band: upper, Shape (N, 4)."""
+    n = len(tau) - 1
+    count = spans + 3
+    for i in range(count):
+        for d in range(4):
+            band[i, d] = 0.0
+        for c in range(3):
+            right[i, c] = 0.0
+    basis = np.zeros(4)
+    span = 0
+    for i in range(n + 1):
+        x = float(tau[i])
+        while span < spans - 1 and x >= t[span + 4]:
+            span += 1
+        # Cox-de Boor on the four B-splines that live on this span.
+        basis[0] = 1.0
+        for degree in range(1, 4):
+            saved = 0.0
+            for r in range(degree):
+                high = float(t[span + 4 + r])
+                low = float(t[span + 4 + r - degree])
+                part = float(basis[r]) / (high - low)
+                basis[r] = saved + (high - x) * part
+                saved = (x - low) * part
+            basis[degree] = saved
+        before = float(tau[i - 1]) if i > 0 else x
+        after = float(tau[i + 1]) if i < n else x
+        weight = after - before
+        for a in range(4):
+            wa = weight * float(basis[a])
+            for b in range(a, 4):
+                band[span + a, b - a] += wa * float(basis[b])
+            for c in range(3):
+                right[span + a, c] += wa * float(points[i, c])
+    mean = 0.0
+    for i in range(count):
+        mean += float(band[i, 0])
+    weight = _SMOOTH * mean / count
+    for i in range(count - 2):
+        band[i, 0] += weight
+        band[i, 1] -= 2.0 * weight
+        band[i, 2] += weight
+        band[i + 1, 0] += 4.0 * weight
+        band[i + 1, 1] -= 2.0 * weight
+        band[i + 2, 0] += weight
+
+
+@kernel
+def _solve(points: Floats, spans: int, band: Floats, right: Floats) -> bool:
+    """Coefficients into `right`; the first and last are the end vertices.  Banded Cholesky, in place."""
+    count = spans + 3
+    last = len(points) - 1
+    for end in range(2):
+        at = 0 if end == 0 else count - 1
+        for d in range(1, 4):
+            other = at + d if end == 0 else at - d
+            if 0 <= other < count:
+                value = float(band[at, d]) if end == 0 else float(band[other, d])
+                for c in range(3):
+                    right[other, c] -= value * float(points[0 if end == 0 else last, c])
+                if end == 0:
+                    band[at, d] = 0.0
+                else:
+                    band[other, d] = 0.0
+        band[at, 0] = 1.0
+        for c in range(3):
+            right[at, c] = points[0 if end == 0 else last, c]
+    for i in range(count):
+        pivot = float(band[i, 0])
+        for k in range(1, 4):
+            if i - k >= 0:
+                pivot -= float(band[i - k, k]) * float(band[i - k, k])
+        if pivot <= 0.0:
+            return False
+        root = sqrt(pivot)
+        band[i, 0] = root
+        for d in range(1, 4):
+            if i + d < count:
+                value = float(band[i, d])
+                for k in range(1, 4 - d):
+                    if i - k >= 0:
+                        value -= float(band[i - k, k]) * float(band[i - k, k + d])
+                band[i, d] = value / root
+    for c in range(3):
+        for i in range(count):
+            value = float(right[i, c])
+            for k in range(1, 4):
+                if i - k >= 0:
+                    value -= float(band[i - k, k]) * float(right[i - k, c])
+            right[i, c] = value / float(band[i, 0])
+        for i in range(count - 1, -1, -1):
+            value = float(right[i, c])
+            for k in range(1, 4):
+                if i + k < count:
+                    value -= float(band[i, k]) * float(right[i + k, c])
+            right[i, c] = value / float(band[i, 0])
+    return True
+
+
+@kernel
+def _pieces(t: Floats, spans: int, control: Floats, rows: Floats) -> None:
+    """Each span as powers of tau - t(j): rows, Shape (spans, 12), four numbers a coordinate."""
+    for j in range(spans):
+        u = float(t[j + 3])
+        h = float(t[j + 4]) - u
+        for c in range(3):
+            c0 = float(control[j, c])
+            c1 = float(control[j + 1, c])
+            c2 = float(control[j + 2, c])
+            c3 = float(control[j + 3, c])
+            e0 = 3.0 * (c1 - c0) / float(t[j + 4] - t[j + 1])
+            e1 = 3.0 * (c2 - c1) / float(t[j + 5] - t[j + 2])
+            e2 = 3.0 * (c3 - c2) / float(t[j + 6] - t[j + 3])
+            f0 = 2.0 * (e1 - e0) / float(t[j + 4] - t[j + 2])
+            f1 = 2.0 * (e2 - e1) / float(t[j + 5] - t[j + 3])
+            share = float(u - t[j + 2]) / float(t[j + 4] - t[j + 2])
+            a = c0 + float(u - t[j + 1]) / float(t[j + 4] - t[j + 1]) * (c1 - c0)
+            b = c1 + float(u - t[j + 2]) / float(t[j + 5] - t[j + 2]) * (c2 - c1)
+            rows[j, 4 * c] = a + share * (b - a)
+            rows[j, 4 * c + 1] = e0 + share * (e1 - e0)
+            rows[j, 4 * c + 2] = 0.5 * f0
+            rows[j, 4 * c + 3] = (f1 - f0) / (6.0 * h)
+
+
+@kernel
+def _errors(
+    points: Floats, tau: Floats, t: Floats, spans: int, rows: Floats, errors: Floats, needs: Floats, shifted: Floats
+) -> float:  # fmt: skip
+    """Fills the error bound of each span [mm] (see the module) and how many spans it should be.
+
+    shifted: Shape of tau, the places of the spline nearest to the data;  returns the greatest error.
+    """
+    last = len(tau) - 1
+    for j in range(spans):
+        errors[j] = 0.0
+        needs[j] = 0.0
+    worst = 0.0
+    span = 0
+    before = 0.0
+    bend_before = 0.0
+    vx = vy = vz = 0.0
+    ex = ey = ez = 0.0
+    for i in range(last + 1):
+        x = float(tau[i])
+        while span < spans - 1 and x > t[span + 4]:
+            span += 1
+        v = x - float(t[span + 3])
+        p1 = float(rows[span, 1])
+        p2 = float(rows[span, 2])
+        p3 = float(rows[span, 3])
+        ex = float(points[i, 0]) - (float(rows[span, 0]) + v * (p1 + v * (p2 + v * p3)))
+        sx = p1 + v * (2.0 * p2 + 3.0 * v * p3)
+        bx = 2.0 * p2 + 6.0 * v * p3
+        p1 = float(rows[span, 5])
+        p2 = float(rows[span, 6])
+        p3 = float(rows[span, 7])
+        ey = float(points[i, 1]) - (float(rows[span, 4]) + v * (p1 + v * (p2 + v * p3)))
+        sy = p1 + v * (2.0 * p2 + 3.0 * v * p3)
+        by = 2.0 * p2 + 6.0 * v * p3
+        p1 = float(rows[span, 9])
+        p2 = float(rows[span, 10])
+        p3 = float(rows[span, 11])
+        ez = float(points[i, 2]) - (float(rows[span, 8]) + v * (p1 + v * (p2 + v * p3)))
+        sz = p1 + v * (2.0 * p2 + 3.0 * v * p3)
+        bz = 2.0 * p2 + 6.0 * v * p3
+        ss = sx * sx + sy * sy + sz * sz
+        bend = sqrt(bx * bx + by * by + bz * bz)
+        step = 0.0
+        if ss > 0.25 and 0 < i < last:
+            step = (ex * sx + ey * sy + ez * sz) / ss
+            ex -= step * sx
+            ey -= step * sy
+            ez -= step * sz
+        shifted[i] = x + step
+        off = sqrt(ex * ex + ey * ey + ez * ez) + 0.5 * bend * step * step
+        if i > 0:
+            size = x - float(tau[i - 1])
+            bump = 0.125 * size * size * max(bend, bend_before)
+            apart = sqrt((ex - vx) * (ex - vx) + (ey - vy) * (ey - vy) + (ez - vz) * (ez - vz))
+            bound = max(off, before)
+            if 4.0 * bump > apart:
+                bound += bump + apart * apart / (16.0 * bump) - 0.5 * apart
+            worst = max(worst, bound)
+            j = span
+            while True:
+                errors[j] = max(float(errors[j]), bound)
+                needs[j] = max(float(needs[j]), 2.0 * bump)
+                if j == 0 or t[j + 3] <= tau[i - 1]:
+                    break
+                j -= 1
+        before = off
+        bend_before = bend
+        vx = ex
+        vy = ey
+        vz = ez
+    return worst
+
+
+@kernel
+def _axes(points: Floats, tau: Floats, t: Floats, spans: int, errors: Floats) -> float:
+    """Raises the errors by what additional axes, linear from knot to knot, miss; returns the greatest of that."""
+    k = points.shape[1]
+    worst = 0.0
+    for c in range(3, k):
+        at = 0
+        value = float(points[0, c])
+        for j in range(spans):
+            low = float(t[j + 3])
+            high = float(t[j + 4])
+            end = at
+            while end < len(tau) - 2 and tau[end + 1] < high:
+                end += 1
+            share = (high - float(tau[end])) / float(tau[end + 1] - tau[end])
+            stop = float(points[end, c]) + share * float(points[end + 1, c] - points[end, c])
+            for i in range(at, end + 1):
+                if low <= tau[i] <= high:
+                    linear = value + (float(tau[i]) - low) / (high - low) * (stop - value)
+                    off = abs(float(points[i, c]) - linear)
+                    errors[j] = max(float(errors[j]), off)
+                    worst = max(worst, off)
+            at = end
+            value = stop
+    return worst
+
+
+@kernel
+def _density(errors: Floats, needs: Floats, spans: int, tolerance: float) -> float:
+    """Turns `needs` (the sag between data, which no knot lowers) into spans needed for each; returns their sum."""
+    for j in range(spans):
+        sag = min(float(needs[j]), 0.7 * tolerance)
+        part = max(float(errors[j]) - sag, 0.0) / (tolerance - sag)
+        needs[j] = sqrt(sqrt(max(part, _FLOOR)))
+    # An error is an oscillation through several spans: neighbours share their needs.
+    total = 0.0
+    before = float(needs[0])
+    for j in range(spans):
+        here = float(needs[j])
+        after = float(needs[j + 1]) if j + 1 < spans else here
+        needs[j] = 0.25 * before + 0.5 * here + 0.25 * after
+        before = here
+        total += float(needs[j])
+    return total
+
+
+@kernel
+def _pad(knots: Floats, spans: int, t: Floats) -> None:
+    """The knots with the end ones repeated: Shape (spans + 7,)."""
+    for i in range(3):
+        t[i] = knots[0]
+        t[spans + 4 + i] = knots[spans]
+    for i in range(spans + 1):
+        t[3 + i] = knots[i]
+
+
+@kernel
+def _spread(knots: Floats, spans: int, needs: Floats, total: float, wanted: int, out: Floats) -> None:
+    """Knots at equal shares of the spans needed."""
+    out[0] = knots[0]
+    j = 0
+    done = 0.0
+    for i in range(1, wanted):
+        goal = total * i / wanted
+        while j < spans - 1 and done + needs[j] < goal:
+            done += float(needs[j])
+            j += 1
+        out[i] = float(knots[j]) + (goal - done) / float(needs[j]) * float(knots[j + 1] - knots[j])
+    out[wanted] = knots[spans]
+
+
+@kernel
+def fit_spline(
+    points: Floats, tau: Floats, tolerance: float, knots: Floats, rows: Floats, most: int
+) -> int:  # fmt: skip
+    """The number of cubics, with few of them, that keep the tolerance along a run; 0 if none was found.
+
+    Args:     points: Shape (m, >= 3), vertices and middles of the chords in turn, and additional axes;
+              tau: Shape (m,), way along the chords, ascending from 0; moved to the nearest places of the spline;
+              most: greatest number of pieces;
+              knots: Shape (most + 1,), out: in the moved tau;  rows: Shape (most, 12), out: coefficients over
+              the share 0..1 of each span, four a coordinate.
+    """
+    cap = most + 8
+    last = len(tau) - 1
+    shifted = np.zeros(last + 1)
+    kept = np.zeros(last + 1)
+    t = np.zeros(cap)
+    band = np.zeros((cap, 4))
+    right = np.zeros((cap, 3))
+    errors = np.zeros(cap)
+    needs = np.zeros(cap)
+    trial = np.zeros((cap, 12))
+    now = np.zeros(cap)
+    fresh = np.zeros(cap)
+    spans = min(max(last // 48, 1), most)
+    for i in range(spans + 1):
+        now[i] = float(tau[last]) * i / spans
+    found = 0
+    failed = 0
+    for _ in range(_ROUNDS):
+        _pad(now, spans, t)
+        _assemble(points, tau, t, spans, band, right)
+        if not _solve(points, spans, band, right):
+            break
+        _pieces(t, spans, right, trial)
+        worst = _errors(points, tau, t, spans, trial, errors, needs, shifted)
+        worst = max(worst, _axes(points, tau, t, spans, errors))
+        total = _density(errors, needs, spans, tolerance)
+        if worst <= tolerance:
+            failed = 0
+            found = spans
+            for i in range(spans + 1):
+                knots[i] = now[i]
+            for j in range(spans):
+                for c in range(12):
+                    rows[j, c] = trial[j, c]
+            for i in range(last + 1):
+                kept[i] = tau[i]
+            wanted = min(int(total) + 1, spans - 1 - spans // 64)
+        else:
+            failed += 1
+            if found > 0:
+                wanted = spans if failed < 3 else (spans + found) // 2
+                if wanted == spans and failed > 3:
+                    break
+            else:
+                wanted = max(int(total * (1.0 + 0.02 * failed)) + 1, spans + (0 if failed < 4 else 1))
+        if wanted > most or wanted < 1:
+            break
+        for i in range(1, last):
+            low = float(tau[i - 1])
+            room = 0.1 * (float(tau[i + 1]) - low)
+            tau[i] = min(max(float(shifted[i]), low + room), float(tau[i + 1]) - room)
+        _spread(now, spans, needs, total, wanted, fresh)
+        spans = wanted
+        for i in range(spans + 1):
+            now[i] = fresh[i]
+    for i in range(last + 1):
+        if found > 0:
+            tau[i] = kept[i]
+    for j in range(found):
+        h = float(knots[j + 1] - knots[j])
+        for c in range(3):
+            rows[j, 4 * c + 1] *= h
+            rows[j, 4 * c + 2] *= h * h
+            rows[j, 4 * c + 3] *= h * h * h
+    return found

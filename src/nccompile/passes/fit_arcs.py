@@ -1,0 +1,72 @@
+"""fit-arcs: runs of small lines become arcs, helices and lines within a tolerance.
+
+    in    ●──●──●                    out   ●──────.
+                 `●                               `-.     one arc through the first and the last vertex; every
+                   `●                                \\     vertex and every chord of the run is within the
+                     ●                                ●    tolerance of it, and it of them
+
+    h(t) <= tolerance on both sides: see kernels/fit_arcs.py for the pencil of circles that gives the longest run
+
+Greedy: each arc replaces the longest run that it can.  An arc lies in X-Y, or with `planes` in Z-X or Y-Z where
+that axis stands still; if the third axis moves linearly with the way it is a helix.  Additional axes must move
+linearly with the way within the same number (mm or degrees).  Corners sharper than `angle` stay exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from nccompile.kernels import fit_arcs as kernels
+from nccompile.passes.base import Context, Flags, Pass, bounded
+from nccompile.passes.runs import Pieces, fit_stream, put_in
+from nccompile.toolpath.columns import CURVE_PARAMETERS, Kind, Toolpath
+from nccompile.units import rad_from_deg
+
+__all__ = ["FitArcs"]
+
+
+@dataclass(frozen=True)
+class FitArcs(Pass):
+    """Arcs for lines.
+
+    tolerance: greatest distance, both ways [mm];  angle: sharper corners stay [°];  ratio: a segment this many
+    times as long as its neighbour ends a run;  least: lines an arc replaces at least;  planes: arcs in Z-X and
+    Y-Z too.
+    """
+
+    name: ClassVar[str] = "fit-arcs"
+    tolerance: float = 0.005
+    angle: float = 30.0
+    ratio: float = 12.0
+    least: int = 3
+    planes: bool = True
+
+    def __post_init__(self) -> None:
+        bounded("tolerance", self.tolerance, 1e-6, 10.0, "mm")
+        bounded("angle", self.angle, 0.1, 120.0, "degrees")
+        bounded("ratio", self.ratio, 1.0, 1e6, "")
+        bounded("least", self.least, 2, 1000, "lines")
+
+    def rewrite(self, chunks: Iterator[Toolpath], context: Context) -> Iterator[Toolpath]:
+        """See the module."""
+        for path, breaks in fit_stream(chunks, rad_from_deg(self.angle), self.ratio, context):
+            if len(path):
+                yield put_in(path, self._pieces(path, breaks), context)
+            else:
+                yield path
+
+    def _pieces(self, path: Toolpath, breaks: Flags) -> Pieces:
+        n = len(path)
+        points = np.vstack([path.start[None, :], path.target])
+        ends, kinds, rows = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros((n, 5))
+        count = kernels.fit_arcs(points, breaks, self.tolerance, self.least, self.planes, ends, rows, kinds)
+        ends, kinds = ends[:count].astype(np.intp), kinds[:count]
+        single = np.diff(ends, prepend=0) == 1
+        kind = np.where(kinds >= 0, int(Kind.ARC), np.where(single, -1, int(Kind.LINE)))
+        table = np.zeros((count, CURVE_PARAMETERS))
+        table[:, :5] = rows[:count]
+        return Pieces(ends - 1, np.ones(count), kind, path.target[ends - 1], np.maximum(kinds, 0), table)

@@ -1,0 +1,168 @@
+"""fit-arcs and fit-splines: tolerance both ways, corners, exact recoveries, helices, axes, chunks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import cKDTree
+
+from nccompile import kernels
+from nccompile.passes.base import Pass
+from nccompile.passes.fit_arcs import FitArcs
+from nccompile.passes.fit_splines import FitSplines
+from nccompile.passes.measure import samples
+from nccompile.toolpath.columns import Kind, Plane, Toolpath
+from tests.passes.paths import SIZES, Sketch, paths, run, same
+
+
+@pytest.fixture(autouse=True)
+def _compiled() -> Iterator[None]:
+    before = kernels.compiled()
+    kernels.use(compiled=True)
+    yield
+    kernels.use(compiled=before)
+
+
+FITS: list[Pass] = [FitArcs(), FitArcs(tolerance=0.05, least=2), FitSplines(), FitSplines(tolerance=0.05)]
+
+
+def polyline(points: Sequence[tuple[float, ...]], feed: float = 50.0) -> Toolpath:
+    sketch = Sketch(points[0])
+    for p in points[1:]:
+        sketch.to(p[0], p[1], p[2] if len(p) > 2 else 0.0, p[3] if len(p) > 3 else 0.0, feed=feed)
+    return sketch.path()
+
+
+def curve(n: int, seed: int = 0, z: float = 0.0) -> list[tuple[float, ...]]:
+    """A smooth wavy contour in n chords, rounded like a post-processor does."""
+    t = np.linspace(0, 2 * pi, n + 1)
+    r = 40 + 6 * np.cos(5 * t + seed) + 2 * np.cos(11 * t)
+    return [
+        (round(a * cos(b), 3), round(a * sin(b), 3), round(z * sin(3 * b), 3))
+        for a, b in zip(r, t, strict=True)
+    ]
+
+
+def dense(path: Toolpath, count: int) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    return samples(path, np.full(len(path), count))[0]
+
+
+def farthest(one: Toolpath, two: Toolpath) -> float:
+    """Largest distance of samples of both paths, by a k-d tree: the spacing of samples is the error."""
+    a, b = dense(one, 400), dense(two, 4000)
+    return max(float(np.max(cKDTree(x).query(y)[0])) for x, y in ((a, b), (b, a)))
+
+
+@pytest.mark.parametrize("p", FITS, ids=repr)
+@settings(max_examples=15, deadline=None)
+@given(path=paths(most=14))
+def test_any_path_passes_and_chunks_do_not_matter(p: Pass, path: Toolpath) -> None:
+    whole, report = run(p, path)
+    assert (report.deviation or 0.0) <= p.tolerance * (1 + 1e-6)  # type: ignore[attr-defined]
+    assert len(whole.events) == len(path.events)
+    for size in SIZES[:2]:
+        assert same(run(p, path, size)[0], whole)
+
+
+@pytest.mark.parametrize("p", [FitArcs(), FitSplines()], ids=repr)
+@pytest.mark.parametrize("z", [0.0, 2.0])
+def test_tolerance_both_ways_on_dense_samples(p: Pass, z: float) -> None:
+    path = polyline(curve(1200, z=z))
+    out, report = run(p, path)
+    assert report.deviation is not None
+    assert report.deviation <= 0.005
+    near = farthest(path, out)
+    assert near <= 0.005 + 0.002
+    assert abs(near - report.deviation) <= 0.002
+    assert len(out) < len(path) / (5 if z == 0.0 else 1.5)
+    for size in SIZES:
+        assert same(run(p, path, size)[0], out)
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(0, 1000), st.integers(60, 400), st.floats(0.001, 0.1))
+def test_random_contours_keep_the_tolerance(seed: int, n: int, tolerance: float) -> None:
+    path = polyline(curve(n, seed))
+    for p in (FitArcs(tolerance=tolerance), FitSplines(tolerance=tolerance)):
+        assert (run(p, path)[1].deviation or 0.0) <= tolerance
+
+
+def test_an_arc_is_found_again() -> None:
+    t = np.linspace(0, 1.5 * pi, 200)
+    out, _ = run(FitArcs(), polyline([(10 * cos(a), 10 * sin(a)) for a in t]))
+    assert len(out) == 1
+    assert out.kind[0] == Kind.ARC
+    assert out.curves.parameters[0, 2] == pytest.approx(10.0, abs=0.005)
+    assert out.curves.parameters[0, 4] == pytest.approx(1.5 * pi, abs=1e-3)
+
+
+def test_a_helix_and_an_arc_in_another_plane_are_found() -> None:
+    t = np.linspace(0, 4, 100)
+    helix, _ = run(FitArcs(), polyline([(10 * cos(a), 10 * sin(a), a / 8) for a in t]))
+    assert len(helix) == 1
+    zx, _ = run(FitArcs(), polyline([(10 * cos(a), 3.0, 10 * sin(a)) for a in t]))
+    assert len(zx) == 1
+    assert zx.curves.plane[0] == Plane.ZX
+    assert len(run(FitArcs(planes=False), polyline([(10 * cos(a), 3.0, 10 * sin(a)) for a in t]))[0]) > 20
+
+
+def test_a_straight_run_becomes_one_line() -> None:
+    out, _ = run(FitArcs(), polyline([(i * 0.5, 0.003 * (i % 2)) for i in range(50)]))
+    assert out.kind.tolist() == [Kind.LINE]
+
+
+@pytest.mark.parametrize("p", [FitArcs(), FitSplines()], ids=repr)
+def test_sharp_corners_stay_exact(p: Pass) -> None:
+    t = np.linspace(0, 2, 80)
+    points = [(10 * cos(a), 10 * sin(a)) for a in t]
+    corner = points[-1]
+    points += [(corner[0] + 0.1 * i, corner[1]) for i in range(1, 40)]
+    out, _ = run(p, polyline(points))
+    assert min(np.abs(out.target[:, :2] - corner).sum(axis=1)) == 0.0
+
+
+def test_splines_are_smooth_to_the_second_derivative() -> None:
+    out, _ = run(FitSplines(), polyline(curve(800)))
+    assert len(out) > 10
+    p = out.curves.parameters.reshape(-1, 3, 4)
+    end = p.sum(axis=2)
+    assert np.abs(end[:-1] - p[1:, :, 0]).max() < 1e-9
+    first, last = p[:, :, 1], p[:, :, 1] + 2 * p[:, :, 2] + 3 * p[:, :, 3]
+    unit = [v / np.linalg.norm(v, axis=1, keepdims=True) for v in (first, last)]
+    assert np.abs(unit[1][:-1] - unit[0][1:]).max() < 1e-7
+    # Curvature is the same on both sides of every joint.
+    bend = [
+        np.cross(v, w)[:, 2] / np.linalg.norm(v, axis=1) ** 3
+        for v, w in ((first, 2 * p[:, :, 2]), (last, 2 * p[:, :, 2] + 6 * p[:, :, 3]))
+    ]
+    assert np.abs(bend[1][:-1] - bend[0][1:]).max() < 1e-6
+
+
+@pytest.mark.parametrize("p", [FitArcs(), FitSplines()], ids=repr)
+def test_additional_axes_stay_near_their_way_and_events_at_their_share(p: Pass) -> None:
+    t = np.linspace(0, 3, 200)
+    sketch = Sketch((10.0, 0.0, 0.0, 0.0))
+    for i, a in enumerate(t[1:]):
+        sketch.to(10 * cos(a), 10 * sin(a), 0.0, 20 * a)
+        if i == 99:
+            sketch.switch(7, 1.0)
+    path = sketch.path()
+    out, _ = run(p, path)
+    assert len(out) < 20
+    way = np.concatenate([[0.0], np.cumsum(out.length)]) / out.length.sum()
+    assert np.abs(np.append(0.0, out.target[:, 3]) - 60 * way).max() < 0.02
+    e = out.events
+    at = way[e.segment[0]] + e.position[0] * out.length[e.segment[0]] / out.length.sum()
+    assert at == pytest.approx(100 / 199, abs=1e-3)
+
+
+def test_fits_are_stable_when_run_again() -> None:
+    once, _ = run(FitArcs(), polyline(curve(600)))
+    again, _ = run(FitArcs(), once)
+    assert len(again) >= 0.7 * len(once)
+    assert np.array_equal(again.end, once.end)
