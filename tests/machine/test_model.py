@@ -19,7 +19,7 @@ def test_the_mill_reads_as_written() -> None:
     assert (machine.name, machine.cycle_us, machine.cycle) == ("mill3", 1000, 0.001)
     assert list(machine.axes) == ["X", "Y", "Z"]
     x = machine.axes["X"]
-    assert (x.kind, x.min, x.max, x.velocity, x.acceleration) == ("linear", -500, 500, 250, 2500)
+    assert (x.kind, x.min, x.max, x.velocity, x.acceleration) == ("linear", -1500, 1500, 250, 2500)
     assert (x.velocity_step, x.rapid, x.following_error, x.lag) == (8, 200, 2, 0.004)
     assert (machine.path.feed, machine.path.acceleration, machine.path.time_law) == (20, 1500, "trapezoid")
     assert (machine.queue, machine.low_water) == (4096, 2048)
@@ -84,9 +84,9 @@ def test_defaults_need_only_name_and_axes() -> None:
         ),
         ("X = 0", "Q = 0", "kinematics.offset.Q: no such axis; the machine has X Y Z"),
         ("X = 0", 'X = "a"', 'kinematics.offset.X: expected a number of mm or deg, found "a"'),
-        ("max = 500", "max = -500", "axes.X: min must be less than max, not -500 and -500"),
+        ("max = 1500", "max = -1500", "axes.X: min must be less than max, not -1500 and -1500"),
         ("rapid = 200", "rapid = 300", "axes.X: rapid must not exceed velocity, not 300 and 250"),
-        ("rapid = 200", "home = 501", "axes.X: home must lie in the travel -500 to 500, not 501"),
+        ("rapid = 200", "home = 1501", "axes.X: home must lie in the travel -1500 to 1500, not 1501"),
         ('name = "mill3"', "name = 3", "machine.name: expected a text of 1 to 100 characters"),
         ('name = "mill3"', 'name = ""', "machine.name: expected a text of 1 to 100 characters"),
         ("queue = 4096", "queue = 100", "runtime: low_water must not exceed queue, not 2048 and 100"),
