@@ -64,8 +64,8 @@ def test_defaults_need_only_name_and_axes() -> None:
         ("velocity = 250", "velocty = 250", "axes.X.velocty: unknown key; did you mean velocity?"),
         (
             "acceleration = 2500",
-            "jerk = 1",
-            "axes.X.jerk: unknown key; known keys: kind, min, max, velocity,",
+            "backlash = 1",
+            "axes.X.backlash: unknown key; known keys: kind, min, max, velocity,",
         ),
         (
             "cycle_us = 1000",
