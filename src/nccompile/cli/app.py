@@ -20,6 +20,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
+from nccompile import kernels
 from nccompile.cli.compile import compile_program
 from nccompile.cli.dump import dump
 from nccompile.cli.explain import explain
@@ -47,6 +48,7 @@ class Guarded(TyperCommand):
 
     def invoke(self, ctx: Any) -> Any:
         """Runs the command's function."""
+        kernels.on_first_compilation(_announce)
         try:
             return super().invoke(ctx)
         except NccompileError as error:
@@ -159,6 +161,10 @@ def _exit_on_terminate() -> None:
         signal.signal(signal.SIGTERM, leave)
     except ValueError:  # not in the main thread: whoever runs us there handles signals
         return
+
+
+def _announce() -> None:
+    _say("compiling kernels for this computer, once (10 to 30 s) ...")
 
 
 def _say(text: str) -> None:

@@ -17,11 +17,12 @@ import functools
 import hashlib
 import os
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar
 
-__all__ = ["LARGE", "Kernel", "compiled", "expect_work", "kernel", "use"]
+__all__ = ["LARGE", "Kernel", "compiled", "expect_work", "kernel", "on_first_compilation", "use"]
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -29,7 +30,7 @@ R = TypeVar("R")
 LARGE = 20_000
 """Items of work (segments, cycles) above which compiled kernels pay for importing numba."""
 
-_state = {"compiled": os.environ.get("NCCOMPILE_KERNELS") == "numba"}
+_state: dict[str, Any] = {"compiled": os.environ.get("NCCOMPILE_KERNELS") == "numba", "tell": None}
 
 
 class Kernel(Generic[P, R]):
@@ -68,7 +69,7 @@ def kernel(function: Callable[P, R]) -> Kernel[P, R]:
 
 def compiled() -> bool:
     """Whether kernels run as machine code in this process."""
-    return _state["compiled"]
+    return bool(_state["compiled"])
 
 
 def use(*, compiled: bool) -> None:
@@ -82,6 +83,11 @@ def expect_work(items: int) -> None:
         _state["compiled"] = True
 
 
+def on_first_compilation(tell: Callable[[], None]) -> None:
+    """Has `tell` called once before kernels are compiled that no earlier process has left in the cache."""
+    _state["tell"] = tell
+
+
 @functools.cache
 def _numba() -> Any:
     """Imports numba with a cache folder of our own.
@@ -91,8 +97,21 @@ def _numba() -> Any:
     """
     sources = b"".join(p.read_bytes() for p in sorted(Path(__file__).parent.glob("*.py")))
     digest = hashlib.sha256(sources + sys.version.encode()).hexdigest()[:16]
-    base = os.environ.get("NCCOMPILE_CACHE") or os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(Path(base) / "nccompile" / digest))
+    folder = _cache_base() / "nccompile" / digest
+    if not folder.exists() and _state["tell"] is not None:
+        _state["tell"]()
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(folder))
     import numba  # noqa: PLC0415
 
     return numba
+
+
+def _cache_base() -> Path:
+    """The folder for machine code: NCCOMPILE_CACHE, the user's cache, or where that cannot be written, a new one."""
+    named = os.environ.get("NCCOMPILE_CACHE") or os.environ.get("XDG_CACHE_HOME")
+    base = Path(named) if named else Path.home() / ".cache"
+    try:
+        (base / "nccompile").mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return Path(tempfile.mkdtemp(prefix="nccompile-"))
+    return base if os.access(base / "nccompile", os.W_OK) else Path(tempfile.mkdtemp(prefix="nccompile-"))
