@@ -21,7 +21,7 @@ from nccompile.diagnostics import Diagnostics
 from nccompile.machine.limits import check_axes, check_travel
 from nccompile.machine.model import Machine
 from nccompile.passes.check_marks import check_marks
-from nccompile.passes.velocity import PlanSettings, plan, row_times
+from nccompile.passes.velocity import LOOK_AHEAD, WINDOW, PlanSettings, plan, row_times
 from nccompile.source import LargeSource, Source
 from nccompile.threads import ahead
 from nccompile.toolpath import Toolpath
@@ -35,7 +35,8 @@ class Options:
     """What a compilation needs besides the program.
 
     decoder: start position, variables, skipped blocks, jump limit;  angle_tolerance [deg] and time_law: those
-    of the machine if None;  verify: check the invariants of the toolpath after every stage.
+    of the machine if None;  verify: check the invariants of the toolpath after every stage;  planner: one of
+    `PLANNERS`, window: rows it looks ahead, None for all, junction_deviation [mm] (`PlanSettings`).
     """
 
     machine: Machine
@@ -43,6 +44,9 @@ class Options:
     angle_tolerance: float | None = None
     time_law: str | None = None
     verify: bool = False
+    planner: str = LOOK_AHEAD
+    window: int | None = WINDOW
+    junction_deviation: float | None = None
 
 
 @dataclass
@@ -50,6 +54,7 @@ class JobTime:
     """Adds up the time of planned chunks on their way."""
 
     seconds: float = 0.0
+    smoothing: float = 0.0
     _velocity: float = 0.0
 
     def along(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
@@ -57,7 +62,7 @@ class JobTime:
         for chunk in chunks:
             if len(chunk):
                 assert chunk.v_end is not None
-                self.seconds += float(row_times(chunk, self._velocity).sum())
+                self.seconds += float(row_times(chunk, self._velocity, self.smoothing).sum())
                 self._velocity = float(chunk.v_end[-1])
             yield chunk
 
@@ -94,7 +99,11 @@ class Compilation:
             program.axes,
             angle_tolerance_deg=self.angle_tolerance,
             time_law=self.time_law,
+            planner=self.options.planner,
+            window=self.options.window,
+            junction_deviation=self.options.junction_deviation,
         )
+        self.time.smoothing = settings.smoothing
         chunks = self._checked(self._verified(program))
         return self.time.along(self._verified(plan(chunks, settings)))
 
@@ -120,6 +129,7 @@ class Compilation:
             machine_sha256=machine_digest(self.options.machine),
             angle_tolerance=self.angle_tolerance,
             time_law=self.time_law,
+            smoothing=self.time.smoothing,
         )
 
     def _program(self) -> Decoded:

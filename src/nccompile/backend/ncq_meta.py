@@ -38,7 +38,8 @@ class Provenance:
 
     source, machine: names without folders, so that equal inputs give equal bytes wherever they lie;
     the SHA-256 are those of the program's bytes and of the machine's canonical JSON;
-    angle_tolerance [deg]; time_law: one of `TIME_LAWS`.
+    angle_tolerance [deg]; time_law: one of `TIME_LAWS`; smoothing: duration of the mean that the interpolator
+    runs [s] (planner `jerk`), 0 for none.
     """
 
     source: str
@@ -47,6 +48,7 @@ class Provenance:
     machine_sha256: str
     angle_tolerance: float
     time_law: str
+    smoothing: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,8 @@ class Meta:
             "start": dict(zip(self.axes, self.start, strict=True)),
             "source": {"name": p.source, "sha256": p.source_sha256},
             "machine": {"name": p.machine, "sha256": p.machine_sha256},
-            "planning": {"angle_tolerance": p.angle_tolerance, "time_law": p.time_law},
+            "planning": {"angle_tolerance": p.angle_tolerance, "time_law": p.time_law}
+            | ({"smoothing": p.smoothing} if p.smoothing else {}),
             "totals": asdict(self.totals),
             "names": list(self.names),
             "chunks": [list(c) for c in self.chunks],
@@ -117,6 +120,7 @@ class Meta:
                 _text(source["name"]), _text(source["sha256"]),
                 _text(machine["name"]), _text(machine["sha256"]),
                 _number(planning["angle_tolerance"]), planning["time_law"],
+                _not_negative(planning.get("smoothing", 0.0)),
             ),
             totals=_totals(content["totals"], axes),
             names=tuple(_text(n) for n in content["names"]),
@@ -157,6 +161,12 @@ def _number(value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
         raise ValueError(f"{value!r} is not a number")
     return float(value)
+
+
+def _not_negative(value: object) -> float:
+    if (number := _number(value)) < 0.0:
+        raise ValueError(f"{value!r} is negative")
+    return number
 
 
 def _whole(value: object) -> int:

@@ -51,14 +51,19 @@ def rows_of(path: Toolpath) -> k.Rows:
     )  # fmt: skip
 
 
-def sample(chunks: Iterable[Toolpath], cycle: float, law: int = TRAPEZOID) -> Iterator[SampleBlock]:
-    """Samples a planned path every `cycle` seconds; the last block ends at the end of the path, at rest."""
+def sample(
+    chunks: Iterable[Toolpath], cycle: float, law: int = TRAPEZOID, smoothing: float = 0.0
+) -> Iterator[SampleBlock]:
+    """Samples a planned path every `cycle` seconds; the last block ends at the end of the path, at rest.
+
+    smoothing [s]: as the path was planned for (planner `jerk`).
+    """
     supply = iter(chunks)
     window = next(supply, None)
     if window is None:
         return
     stepper = Stepper(window.start)
-    inputs = k.Inputs(k.GO, 0.0, 1.0, law, 0, 0, 1, 1, cycle)
+    inputs = k.Inputs(k.GO, 0.0, 1.0, law, 0, 0, 1, 1, cycle, smoothing)
     rows, head, version, complete = rows_of(window), 0, 0, False
     cycles = 0
     while True:

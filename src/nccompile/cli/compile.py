@@ -12,13 +12,17 @@ from nccompile.cli.options import (
     AngleTolerance,
     Define,
     DiagnosticsFormat,
+    JunctionDeviation,
     MachineFile,
     MaxJumps,
+    PlannerName,
+    PlannerOption,
     Report,
     SkipBlocks,
     Start,
     TimeLawOption,
     Verify,
+    Window,
 )
 
 if TYPE_CHECKING:
@@ -41,6 +45,9 @@ def compile_program(
     max_jumps: MaxJumps = None,
     angle_tolerance: AngleTolerance = None,
     time_law: TimeLawOption = None,
+    planner: PlannerOption = PlannerName.LOOK_AHEAD,
+    window: Window = None,
+    junction_deviation: JunctionDeviation = None,
     verify: Verify = False,
     diagnostics: DiagnosticsFormat = Report.TEXT,
     report: Annotated[
@@ -53,7 +60,10 @@ def compile_program(
 
     source = read_program(program)
     place = output_of(program, output, ".ncq")
-    settings = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify)
+    settings = ProgramOptions(
+        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+    )  # fmt: skip
     options = settings.resolve(machine_of(machine))
     compilation = Compilation(source, options)
     meta = compilation.write(place)

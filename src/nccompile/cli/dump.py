@@ -17,13 +17,17 @@ from nccompile.cli.options import (
     Define,
     DiagnosticsFormat,
     Input,
+    JunctionDeviation,
     MachineFile,
     MaxJumps,
+    PlannerName,
+    PlannerOption,
     Report,
     SkipBlocks,
     Start,
     TimeLawOption,
     Verify,
+    Window,
 )
 from nccompile.errors import UsageError
 
@@ -63,6 +67,9 @@ def dump(
     max_jumps: MaxJumps = None,
     angle_tolerance: AngleTolerance = None,
     time_law: TimeLawOption = None,
+    planner: PlannerOption = PlannerName.LOOK_AHEAD,
+    window: Window = None,
+    junction_deviation: JunctionDeviation = None,
     verify: Verify = False,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
@@ -70,7 +77,10 @@ def dump(
     from nccompile.cli.inputs import ProgramOptions, machine_of
     from nccompile.toolpath.text import format_toolpaths
 
-    options = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify)
+    options = ProgramOptions(
+        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+    )  # fmt: skip
     chunks = _chunks(path, machine_of(machine), options, stage, diagnostics)
     if form is Form.TEXT:
         sys.stdout.writelines(line + "\n" for line in format_toolpaths(chunks))

@@ -16,6 +16,7 @@ from nccompile.cli.report import report
 from nccompile.decoder import DecodeOptions
 from nccompile.errors import UsageError
 from nccompile.machine.model import Machine, default_machine, load
+from nccompile.passes.velocity import LOOK_AHEAD, WINDOW
 from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options
 from nccompile.toolpath import Toolpath
@@ -43,6 +44,9 @@ class ProgramOptions:
     angle_tolerance: float | None = None
     time_law: str | None = None
     verify: bool = False
+    planner: str | None = None
+    window: int | None = None
+    junction_deviation: float | None = None
 
     def resolve(self, machine: Machine) -> Options:
         """The options of a compilation; raises UsageError."""
@@ -53,7 +57,10 @@ class ProgramOptions:
             max_switches=machine.path.max_switches,
             max_jumps=DecodeOptions.max_jumps if self.max_jumps is None else self.max_jumps,
         )
-        return Options(machine, decoder, self.angle_tolerance, self.time_law, self.verify)
+        return Options(
+            machine, decoder, self.angle_tolerance, self.time_law, self.verify, self.planner or LOOK_AHEAD,
+            WINDOW if self.window is None else self.window or None, self.junction_deviation,
+        )  # fmt: skip
 
     @property
     def given(self) -> list[str]:
@@ -65,13 +72,15 @@ class ProgramOptions:
 class Job:
     """A planned path ready to be run, sampled or drawn.
 
-    name: of its file;  time_law: it was planned for;  chunks: the path from its start, each time it is called;
-    job_time [s];  segments: how many;  machine, machine_sha256: those it was planned for.
+    name: of its file;  time_law and smoothing [s]: it was planned for;  chunks: the path from its
+    start, each time it is called;  job_time [s];  segments: how many;  machine, machine_sha256: those it was
+    planned for.
     """
 
     name: str
     axes: tuple[str, ...]
     time_law: str
+    smoothing: float
     chunks: Callable[[], Iterator[Toolpath]]
     job_time: float
     segments: int
@@ -124,7 +133,10 @@ def _job(
     segments: int,
     origin: ncq.Provenance,
 ) -> Job:
-    return Job(name, axes, origin.time_law, chunks, job_time, segments, origin.machine, origin.machine_sha256)
+    return Job(
+        name, axes, origin.time_law, origin.smoothing, chunks, job_time, segments, origin.machine,
+        origin.machine_sha256,
+    )  # fmt: skip
 
 
 def compiled(

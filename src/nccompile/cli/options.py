@@ -17,14 +17,18 @@ __all__ = [
     "Define",
     "DiagnosticsFormat",
     "Input",
+    "JunctionDeviation",
     "MachineFile",
     "MaxJumps",
+    "PlannerName",
+    "PlannerOption",
     "Report",
     "SkipBlocks",
     "Start",
     "TimeLaw",
     "TimeLawOption",
     "Verify",
+    "Window",
     "parse_defines",
     "parse_start",
 ]
@@ -35,6 +39,14 @@ class TimeLaw(StrEnum):
 
     TRAPEZOID = "trapezoid"
     SIGMOID = "sigmoid"
+
+
+class PlannerName(StrEnum):
+    """Planners of the velocity (docs/planning.md)."""
+
+    SOFTMOTION = "softmotion"
+    LOOK_AHEAD = "look-ahead"
+    JERK = "jerk"
 
 
 class Report(StrEnum):
@@ -77,6 +89,17 @@ AngleTolerance = Annotated[
 ]
 TimeLawOption = Annotated[
     TimeLaw | None, typer.Option("--time-law", help="Velocity profile; default: the machine's.")
+]
+PlannerOption = Annotated[PlannerName, typer.Option("--planner", help="How velocities are planned.")]
+Window = Annotated[
+    int | None,
+    typer.Option("--window", metavar="N", min=0, help="Segments looked ahead, 0 for all; default: 30000."),
+]
+JunctionDeviation = Annotated[
+    float | None,
+    typer.Option(
+        "--junction-deviation", metavar="MM", min=1e-6, max=10.0, help="How far a corner may be rounded."
+    ),
 ]
 Verify = Annotated[bool, typer.Option("--verify", help="Check the toolpath after every stage.")]
 DiagnosticsFormat = Annotated[Report, typer.Option("--diagnostics", help="Diagnostics as text or JSON.")]

@@ -13,12 +13,16 @@ from nccompile.cli.options import (
     Define,
     DiagnosticsFormat,
     Input,
+    JunctionDeviation,
     MachineFile,
     MaxJumps,
+    PlannerName,
+    PlannerOption,
     Report,
     SkipBlocks,
     Start,
     TimeLawOption,
+    Window,
 )
 from nccompile.errors import UsageError
 
@@ -42,6 +46,9 @@ def plot(
     max_jumps: MaxJumps = None,
     angle_tolerance: AngleTolerance = None,
     time_law: TimeLawOption = None,
+    planner: PlannerOption = PlannerName.LOOK_AHEAD,
+    window: Window = None,
+    junction_deviation: JunctionDeviation = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
     """Draw the path, and velocity and acceleration over time."""
@@ -57,11 +64,14 @@ def plot(
     if place.suffix.lower() not in SUFFIXES:
         raise UsageError(f"{place}: pictures are written as {', '.join(SUFFIXES)}")
     axes_of = machine_of(machine)
-    options = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law)
+    options = ProgramOptions(
+        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, False,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+    )  # fmt: skip
     job = open_job(path, axes_of, options, diagnostics)
     cycle = axes_of.cycle * max(1, ceil(job.job_time / axes_of.cycle / MOST_SAMPLES))
     expect_work(int(job.job_time / cycle))
-    motion = gather(job.axes, sample(job.chunks(), cycle, LAWS[job.time_law]))
+    motion = gather(job.axes, sample(job.chunks(), cycle, LAWS[job.time_law], job.smoothing))
     title = f"{job.name}: {job.segments} segments, {job.job_time:.3f} s"
     save(place, job.chunks(), motion, limits(axes_of, job.axes), title=title)
     print(f"{place}: path, and velocity and acceleration over {job.job_time:.3f} s")

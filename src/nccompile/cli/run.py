@@ -14,12 +14,16 @@ from nccompile.cli.options import (
     Define,
     DiagnosticsFormat,
     Input,
+    JunctionDeviation,
     MachineFile,
     MaxJumps,
+    PlannerName,
+    PlannerOption,
     Report,
     SkipBlocks,
     Start,
     TimeLawOption,
+    Window,
 )
 from nccompile.errors import UsageError
 
@@ -69,6 +73,9 @@ def run_program(
     max_jumps: MaxJumps = None,
     angle_tolerance: AngleTolerance = None,
     time_law: TimeLawOption = None,
+    planner: PlannerOption = PlannerName.LOOK_AHEAD,
+    window: Window = None,
+    junction_deviation: JunctionDeviation = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
     """Run an OutQueue or program on virtual drives and print what happened."""
@@ -79,7 +86,10 @@ def run_program(
     from nccompile.toolchain import machine_digest
 
     axes = machine_of(machine)
-    options = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law)
+    options = ProgramOptions(
+        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, False,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+    )  # fmt: skip
     job = open_job(path, axes, options, diagnostics)
     if job.machine_sha256 != machine_digest(axes):
         print(f"note: {path} was planned for {job.machine}, it runs on {axes.name}", file=sys.stderr)
@@ -116,6 +126,7 @@ def _options(job: Job, realtime: bool, override: float, m_delay: str, at: list[s
         commands=[parse_command(text) for text in at or ()],
         m_delay=_delay(m_delay),
         vel_mode=LAWS[job.time_law],
+        smoothing=job.smoothing,
         file=job.name,
     )
 

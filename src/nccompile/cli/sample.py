@@ -13,12 +13,16 @@ from nccompile.cli.options import (
     Define,
     DiagnosticsFormat,
     Input,
+    JunctionDeviation,
     MachineFile,
     MaxJumps,
+    PlannerName,
+    PlannerOption,
     Report,
     SkipBlocks,
     Start,
     TimeLawOption,
+    Window,
 )
 
 __all__ = ["sample"]
@@ -41,6 +45,9 @@ def sample(
     max_jumps: MaxJumps = None,
     angle_tolerance: AngleTolerance = None,
     time_law: TimeLawOption = None,
+    planner: PlannerOption = PlannerName.LOOK_AHEAD,
+    window: Window = None,
+    junction_deviation: JunctionDeviation = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
     """Write the set positions of every cycle: t, axes, path velocity, source line, status, switch word."""
@@ -55,11 +62,14 @@ def sample(
     if output is not None and output.suffix.lower() not in (".csv", ".npz"):
         raise UsageError(f"{output}: samples are written as .csv or .npz")
     axes_of = machine_of(machine)
-    options = ProgramOptions(start, define, skip_blocks, max_jumps, angle_tolerance, time_law)
+    options = ProgramOptions(
+        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, False,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+    )  # fmt: skip
     job = open_job(path, axes_of, options, diagnostics)
     cycle = seconds_from_us(cycle_us or axes_of.cycle_us)
     expect_work(int(job.job_time / cycle))
-    blocks = sample_chunks(job.chunks(), cycle, LAWS[job.time_law])
+    blocks = sample_chunks(job.chunks(), cycle, LAWS[job.time_law], job.smoothing)
     if output is None:
         write_samples_csv(sys.stdout, job.axes, blocks)
         return

@@ -8,13 +8,21 @@ spends its time along the rows: it may finish several short ones; it ends early 
 has to be seen by the outside: a jump (G92), an M function, the end, a wait.  The first cycle puts
 out the start position.
 
+Smoothing (planner `jerk`): the motion above is the leader; what is put out, the follower, has covered the mean
+of the leader's way over the last `smoothing` seconds.  Its velocity is a mean of the leader's, its
+acceleration is (v(t) - v(t - T)) / T and its jerk (a(t) - a(t - T)) / T, whatever overrides and stops the leader
+goes through.  Where the leader stops at the end of a row it rests until the follower has arrived.
+
+    v    leader  ____            follower    ___
+            ___/    \\___                __/   \\__      events, lines and positions are the follower's
+
 Whoever calls with the same rows, inputs and cycle time gets the same bits, whatever the number of cycles a
 call: the offline sampler and the cyclic task differ only in who supplies rows.
 """
 
 from __future__ import annotations
 
-from math import cos, sin, sqrt
+from math import ceil, cos, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -43,16 +51,22 @@ RAN, NEED_DATA, JUMPED, AT_M, FINISHED, LOG_FULL = 0, 1, 2, 3, 4, 5
 GO, SLOW, QUICK, EMERGENCY, ABORT = 0, 1, 2, 3, 4
 
 # State f
-TAU, T1, T2, T3, V0, VP, V1, S0, OVERRIDE, S, V, WANTED = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
-F_SIZE = 12
+TAU, T1, T2, T3, V0, VP, V1, S0, OVERRIDE, S, V, WANTED, REST, FOLLOWER_S, COVERED = (
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14
+)  # fmt: skip
+F_SIZE = 15
 
 # State i
 ROW, EVENT, STARTED, RUNNING, HOLD, STATUS, SWITCHES, LAST_SWITCH, M_ROW, LAW, TABLE_ROW, NODES, STOPPING, LINE_NO = (
     0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13
 )  # fmt: skip
-I_SIZE = 14
+SMOOTH, TRAIL_AT, FOLLOWER = 14, 15, 16
+I_SIZE = 17
 
 SWITCH_NUMBERS = 32
+
+CONTINUES = 15
+"""Bit of the column `profile`: the row after this one is a part of the same segment."""
 
 
 class Rows(NamedTuple):
@@ -93,7 +107,8 @@ class Inputs(NamedTuple):
 
     stop: GO, SLOW, QUICK, EMERGENCY or ABORT; quick_decel mm/s²; override >= 0.01; law TRAPEZOID or SIGMOID;
     wait_at_stop, single_step, ack_m: 0 or 1; patient 1: return NEED_DATA instead of braking when rows that are
-    still to come would change the velocity; cycle: seconds.
+    still to come would change the velocity; cycle: seconds; smoothing: duration of the mean [s], 0 for none,
+    taken over at the start of the path.
     """
 
     stop: int
@@ -105,6 +120,7 @@ class Inputs(NamedTuple):
     ack_m: int
     patient: int
     cycle: float
+    smoothing: float = 0.0
 
 
 def state_f() -> Floats:
@@ -284,7 +300,7 @@ def _begin(
         return
     v_end = rows.v_now[row]
     f[WANTED] = v_end
-    if inputs.single_step == 1:
+    if inputs.single_step == 1 and (rows.profile[row] >> CONTINUES) & 1 == 0:
         v_end = 0.0
     v_top = min(f[OVERRIDE] * rows.feed[row], rows.v_limit[row])
     f[T1], f[T2], f[T3], f[VP], f[V1] = law_times(length, v0, v_top, v_end, rows.accel[row], decel)
@@ -292,17 +308,24 @@ def _begin(
 
 
 @kernel
-def _enter(
-    rows: Rows, row: int, v0: float, inputs: Inputs, f: Floats, i: npt.NDArray[np.int64],
-    nodes_u: Floats, nodes_s: Floats,
-) -> None:  # fmt: skip
-    """Starts a row at its beginning: tabulates its curve, rewinds its events, sets its law."""
+def _arrive(rows: Rows, row: int, i: npt.NDArray[np.int64], nodes_u: Floats, nodes_s: Floats) -> None:
+    """The set position comes to a row: tabulates its curve, rewinds its events."""
     kind = rows.kind[row]
     if (kind == ELLIPSE or kind == POLYNOMIAL) and i[TABLE_ROW] != row:
         i[NODES] = tabulate(kind, rows.parameters[rows.curve[row]], nodes_u, nodes_s)
         i[TABLE_ROW] = row
     i[EVENT] = rows.event_begin[row]
     i[LINE_NO] = rows.line[row]
+
+
+@kernel
+def _enter(
+    rows: Rows, row: int, v0: float, inputs: Inputs, f: Floats, i: npt.NDArray[np.int64],
+    nodes_u: Floats, nodes_s: Floats,
+) -> None:  # fmt: skip
+    """Starts a row at its beginning."""
+    if i[SMOOTH] == 0 or i[FOLLOWER] == row:
+        _arrive(rows, row, i, nodes_u, nodes_s)
     i[M_ROW] = -1
     _begin(rows, row, 0.0, v0, inputs, f, i)
 
@@ -373,7 +396,7 @@ def _command(
     if i[STOPPING] != inputs.stop:
         again = True
     elif inputs.stop == GO:
-        if inputs.single_step == 1 and f[V1] > 0.0:
+        if inputs.single_step == 1 and f[V1] > 0.0 and (rows.profile[row] >> CONTINUES) & 1 == 0:
             again = again or f[V] * f[V] <= 2.0 * rows.decel[row] * (rows.length[row] - f[S])
         elif rows.v_now[row] > f[WANTED]:
             again = True
@@ -383,9 +406,81 @@ def _command(
 
 
 @kernel
+def _start(inputs: Inputs, i: npt.NDArray[np.int64], trail: Floats) -> None:
+    """The first cycle: the number of cycles in the mean, rounded up so that no jerk is above the plan's."""
+    i[STARTED] = 1
+    i[STATUS] = IPO_INIT
+    i[FOLLOWER] = i[ROW]
+    if inputs.smoothing > 0.0:
+        i[SMOOTH] = max(1, min(ceil(inputs.smoothing / inputs.cycle - 1e-9), len(trail)))
+        trail[:] = 0.0
+
+
+@kernel
+def _catch_up(
+    rows: Rows, covered: float, cycle: int, f: Floats, i: npt.NDArray[np.int64], nodes_u: Floats,
+    nodes_s: Floats, trail: Floats, log: npt.NDArray[np.int64], logged: int,
+) -> int:  # fmt: skip
+    """Moves the follower by the mean of the leader's last ways; returns the new fill of the log."""
+    m = i[SMOOTH]
+    trail[i[TRAIL_AT]] = covered
+    i[TRAIL_AT] = (i[TRAIL_AT] + 1) % m
+    way = 0.0
+    for n in range(m):
+        way += trail[n]
+    way /= m
+    row = i[FOLLOWER]
+    s = f[FOLLOWER_S] + way
+    while row < i[ROW] and s >= rows.length[row]:
+        logged = _fire(rows, row, rows.length[row], cycle, i, log, logged)
+        if row + 1 == i[ROW] and i[RUNNING] == 0:
+            s = rows.length[row]  # the leader has not entered the next row
+            break
+        s -= rows.length[row]
+        row += 1
+        _arrive(rows, row, i, nodes_u, nodes_s)
+    if row == i[ROW]:
+        s = min(s, f[S])
+    i[FOLLOWER] = row
+    f[FOLLOWER_S] = s
+    f[COVERED] = way
+    return logged
+
+
+@kernel
+def _meet(
+    rows: Rows, cycle: int, f: Floats, i: npt.NDArray[np.int64], here: Floats, log: npt.NDArray[np.int64],
+    logged: int,
+) -> int:  # fmt: skip
+    """The leader has rested long enough at the end of a row: the follower is there, to the bit."""
+    for row in range(i[FOLLOWER], i[ROW]):
+        if row > i[FOLLOWER]:
+            i[EVENT] = rows.event_begin[row]
+            i[LINE_NO] = rows.line[row]
+        logged = _fire(rows, row, rows.length[row], cycle, i, log, logged)
+        for a in range(here.shape[0]):
+            here[a] = rows.target[row, a]
+    i[FOLLOWER] = i[ROW]
+    f[FOLLOWER_S] = 0.0
+    return logged
+
+
+@kernel
+def _freeze(rows: Rows, inputs: Inputs, f: Floats, i: npt.NDArray[np.int64], trail: Floats) -> None:
+    """Emergency stop: the leader comes back to where the follower stands."""
+    ahead = i[ROW] != i[FOLLOWER] or f[S] != f[FOLLOWER_S]
+    trail[:] = 0.0
+    f[REST] = 0.0
+    f[COVERED] = 0.0
+    if ahead:
+        i[ROW] = i[FOLLOWER]
+        _begin(rows, i[ROW], f[FOLLOWER_S], 0.0, inputs, f, i)
+
+
+@kernel
 def advance(
     rows: Rows, head: int, tail: int, settled: int, complete: int, inputs: Inputs, n: int,
-    f: Floats, i: npt.NDArray[np.int64], nodes_u: Floats, nodes_s: Floats, here: Floats,
+    f: Floats, i: npt.NDArray[np.int64], nodes_u: Floats, nodes_s: Floats, trail: Floats, here: Floats,
     out: Floats, velocity: Floats, line: npt.NDArray[np.int32], status: npt.NDArray[np.uint8],
     switches: npt.NDArray[np.uint32], log: npt.NDArray[np.int64],
 ) -> tuple[int, int, int]:  # fmt: skip
@@ -419,8 +514,7 @@ def advance(
             logged_before = logged
         covered = 0.0
         if i[STARTED] == 0:
-            i[STARTED] = 1  # the first cycle: the start position
-            i[STATUS] = IPO_INIT
+            _start(inputs, i, trail)
         elif i[STATUS] == IPO_FINISHED:
             reason = FINISHED
         elif inputs.stop == ABORT:
@@ -432,6 +526,8 @@ def advance(
             f[V] = 0.0
             i[STATUS] = IPO_WAIT
             i[STOPPING] = EMERGENCY
+            if i[SMOOTH] > 0:
+                _freeze(rows, inputs, f, i, trail)
         elif i[HOLD] > 0:
             i[HOLD] -= 1
             i[STATUS] = IPO_WAIT
@@ -442,6 +538,13 @@ def advance(
             left = inputs.cycle
             while True:
                 row = i[ROW]
+                if f[REST] > 0.0:
+                    if left < f[REST] - 1e-9 * inputs.cycle:
+                        f[REST] -= left
+                        break
+                    left = max(left - f[REST], 0.0)
+                    f[REST] = 0.0
+                    logged = _meet(rows, done, f, i, here, log, logged)
                 if row >= last and patient:
                     reason = NEED_DATA
                     break
@@ -503,13 +606,18 @@ def advance(
                         _begin(rows, row, s, 0.0, inputs, f, i)
                         continue
                 covered += rows.length[row] - f[S]
-                logged = _fire(rows, row, rows.length[row], done, i, log, logged)
                 f[S] = 0.0
                 i[RUNNING] = 0
-                if kind != DWELL and kind != M_FUNCTION:
+                i[ROW] = row + 1
+                if i[SMOOTH] == 0:
+                    logged = _fire(rows, row, rows.length[row], done, i, log, logged)
+                elif kind >= SET_POSITION or (f[V] == 0.0 and rows.length[row] <= 0.0 and i[FOLLOWER] == row):
+                    logged = _meet(rows, done, f, i, here, log, logged)
+                elif f[V] == 0.0:
+                    f[REST] = i[SMOOTH] * inputs.cycle
+                if kind != DWELL and kind != M_FUNCTION and (i[SMOOTH] == 0 or kind == SET_POSITION):
                     for a in range(axes):
                         here[a] = rows.target[row, a]
-                i[ROW] = row + 1
                 if kind == SET_POSITION:
                     i[STATUS] = IPO_CONSTANT
                     reason = JUMPED
@@ -524,14 +632,22 @@ def advance(
             here[:] = here_before
             logged = logged_before
             break
-        if i[RUNNING] == 1 and rows.kind[i[ROW]] < SET_POSITION:
+        if i[SMOOTH] > 0:
+            if inputs.stop < EMERGENCY:
+                logged = _catch_up(rows, covered, done, f, i, nodes_u, nodes_s, trail, log, logged)
+                covered = f[COVERED]
+            row = i[FOLLOWER]
+            if row < i[ROW] or (i[RUNNING] == 1 and rows.kind[row] < SET_POSITION):
+                locate(rows, row, f[FOLLOWER_S], nodes_u, nodes_s, i[NODES], here)
+                logged = _fire(rows, row, f[FOLLOWER_S], done, i, log, logged)
+        elif i[RUNNING] == 1 and rows.kind[i[ROW]] < SET_POSITION:
             locate(rows, i[ROW], f[S], nodes_u, nodes_s, i[NODES], here)
             logged = _fire(rows, i[ROW], f[S], done, i, log, logged)
         for a in range(axes):
             out[done, a] = here[a]
         velocity[done] = covered / inputs.cycle
         line[done] = i[LINE_NO]
-        status[done] = i[STATUS]
+        status[done] = IPO_DECEL if i[STATUS] == IPO_WAIT and covered > 0.0 else i[STATUS]
         switches[done] = i[SWITCHES]
         done += 1
     return done, reason, logged

@@ -28,21 +28,33 @@ class AxisLimits:
     """Limits of k axes, f8 arrays of shape (k,), in mm (or deg) and seconds.
 
     An axis that the machine does not have is without limits (inf): `check_axes` reports it if it moves.
-    `rapid` is inf where the machine leaves the velocity of G0 to the program's F, as SoftMotion does.
+    `rapid` is inf where the machine leaves the velocity of G0 to the program's F, as SoftMotion does; `jerk`
+    is None for limits without it.
     """
 
     velocity: Floats
     acceleration: Floats
     velocity_step: Floats
     rapid: Floats
+    jerk: Floats | None = None
+
+
+JERK_RATE = 40.0
+"""Jerk over acceleration of an axis whose machine file has no `jerk` [1/s]: full acceleration after 25 ms."""
 
 
 def limits(machine: Machine, axes: Sequence[str]) -> AxisLimits:
     """The limits of the path axes `axes`, in their order."""
     rows = [
-        (a.velocity, a.acceleration, a.velocity_step, np.inf if a.rapid is None else a.rapid)
+        (
+            a.velocity,
+            a.acceleration,
+            a.velocity_step,
+            np.inf if a.rapid is None else a.rapid,
+            JERK_RATE * a.acceleration if a.jerk is None else a.jerk,
+        )
         if (a := machine.axes.get(letter)) is not None
-        else (np.inf, np.inf, np.inf, np.inf)
+        else (np.inf, np.inf, np.inf, np.inf, np.inf)
         for letter in axes
     ]
     return AxisLimits(*(np.array(column, np.float64) for column in zip(*rows, strict=True)))

@@ -3,7 +3,7 @@
     [machine]     name, cycle_us
     [path]        feed, acceleration, deceleration, quick_deceleration, angle_tolerance, time_law,
                   max_switches
-    [axes.X]      kind, min, max, velocity, acceleration, velocity_step, rapid, following_error, lag, home
+    [axes.X]      kind, min, max, velocity, acceleration, jerk, velocity_step, rapid, following_error, lag, home
     [kinematics]  type, offset
     [runtime]     queue, low_water
 
@@ -102,6 +102,8 @@ class Axis(_Section):
     """Greatest velocity [mm/s or deg/s]."""
     acceleration: float = Field(gt=0, le=_ACCELERATION_MAX, json_schema_extra=_unit("mm/s² or deg/s²"))
     """Greatest acceleration and deceleration [mm/s² or deg/s²]."""
+    jerk: float | None = Field(default=None, gt=0, le=1e12, json_schema_extra=_unit("mm/s³ or deg/s³"))
+    """Greatest jerk with the planner `jerk` [mm/s³ or deg/s³]; 40 / s times `acceleration` without the key."""
     velocity_step: float = Field(ge=0, le=_VELOCITY_MAX, json_schema_extra=_unit("mm/s or deg/s"))
     """Greatest jump of the velocity that drive and mechanics take at a junction [mm/s or deg/s]."""
     rapid: float | None = Field(

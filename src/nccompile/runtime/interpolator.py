@@ -68,7 +68,7 @@ class Inputs:
     quick_deceleration: float = 0.0
     last_way_pos: float = 0.0
 
-    def to_kernel(self, cycle: float, *, patient: bool) -> k.Inputs:
+    def to_kernel(self, cycle: float, *, patient: bool, smoothing: float = 0.0) -> k.Inputs:
         """The inputs as the kernel takes them; the strongest stop wins."""
         stop = k.GO
         for active, command in (
@@ -81,7 +81,7 @@ class Inputs:
         override = min(max(self.override, OVERRIDE_MIN), OVERRIDE_MAX)
         return k.Inputs(
             stop, self.quick_deceleration, override, self.vel_mode, int(self.wait_at_next_stop),
-            int(self.single_step), int(self.ack_m), int(patient), cycle,
+            int(self.single_step), int(self.ack_m), int(patient), cycle, smoothing,
         )  # fmt: skip
 
 
@@ -127,12 +127,14 @@ class Saved:
 class Interpolator:
     """Interpolates the segments of a ring buffer.
 
-    ring: supplies rows; start: Shape (axes,), set position before the first segment; cycle: seconds.
+    ring: supplies rows; start: Shape (axes,), set position before the first segment; cycle: seconds;
+    smoothing: duration of the mean [s], as the path was planned for (planner `jerk`), 0 for none.
     """
 
     ring: RingBuffer
     start: Floats
     cycle: float
+    smoothing: float = 0.0
     inputs: Inputs = field(default_factory=Inputs)
     outputs: Outputs = field(init=False)
 
@@ -149,7 +151,7 @@ class Interpolator:
         view = self.ring.view()
         burst = self._stepper.run(
             view.rows, view.head, view.tail, complete=view.complete, version=view.version,
-            inputs=self.inputs.to_kernel(self.cycle, patient=patient), n=n,
+            inputs=self.inputs.to_kernel(self.cycle, patient=patient, smoothing=self.smoothing), n=n,
         )  # fmt: skip
         head = view.head + burst.dropped
         out, i = self.outputs, self._stepper.i
@@ -163,7 +165,9 @@ class Interpolator:
         out.source_line = int(i[k.LINE_NO]) if out.working else -1
         out.last_switch, out.switches = int(i[k.LAST_SWITCH]), int(i[k.SWITCHES])
         out.tangent = self._stepper.tangent(view.rows, head) if out.working else (0.0, 0.0, 0.0)
-        out.underrun = not view.complete and (head >= view.tail or self._brakes_early(view.rows, head))
+        out.underrun = not view.complete and (
+            head >= view.tail or self._brakes_early(view.rows, head, view.tail)
+        )
         self.ring.drop(burst.dropped)
         self._read_m()
         return burst
@@ -186,6 +190,7 @@ class Interpolator:
         self.ring.rewind(saved.mark)
         self.outputs.set_position = saved.stepper.here.copy()
 
-    def _brakes_early(self, rows: k.Rows, row: int) -> bool:
+    def _brakes_early(self, rows: k.Rows, head: int, tail: int) -> bool:
         """Whether the running segment is to end slower than planned because rows are missing."""
+        row = min(head + int(self._stepper.i[k.ROW]), tail - 1)
         return bool(rows.v_now[row] < rows.v_end[row]) and self._stepper.f[k.OVERRIDE] == 1.0

@@ -178,7 +178,7 @@ def _check_numbers(chunk: Toolpath) -> None:
         _forbid(chunk, ~(np.isfinite(column) & (column >= 0.0)), f"{name} is negative or not finite")
     _forbid(chunk, ~np.isfinite(chunk.radius), "radius is not finite")
     _forbid(chunk, chunk.line < 0, "the source line is negative")
-    _forbid(chunk, chunk.profile >= 1 << len(chunk.axes), "an S-profile bit beyond the axes")
+    _forbid(chunk, (chunk.profile & 0x7FFF) >= 1 << len(chunk.axes), "an S-profile bit beyond the axes")
     _forbid(chunk, (chunk.mark & ~np.uint16(_MARKS)) != 0, "a mark that does not exist")
     for pair in (Mark.TOOL_LEFT | Mark.TOOL_RIGHT, Mark.SMOOTH | Mark.ROUND):
         _forbid(chunk, (chunk.mark & int(pair)) == int(pair), f"marks {pair!s} exclude each other")

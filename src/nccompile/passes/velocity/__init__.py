@@ -5,8 +5,17 @@ planner     the pass itself: a window over the chunks
 """
 
 from nccompile.passes.velocity.planner import Planner, plan, row_times
-from nccompile.passes.velocity.settings import LAWS, LOOK_AHEAD, PLANNERS, SOFTMOTION, WINDOW, PlanSettings
+from nccompile.passes.velocity.settings import (
+    JERK,
+    LAWS,
+    LOOK_AHEAD,
+    PLANNERS,
+    SOFTMOTION,
+    WINDOW,
+    PlanSettings,
+)
 
 __all__ = [
-    "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "WINDOW", "PlanSettings", "Planner", "plan", "row_times",
+    "JERK", "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "WINDOW", "PlanSettings", "Planner", "plan",
+    "row_times",
 ]  # fmt: skip

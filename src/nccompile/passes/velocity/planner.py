@@ -25,26 +25,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from math import sin
 
 import numpy as np
 
 from nccompile.kernels import plan as kernels
-from nccompile.kernels.corners import junctions
-from nccompile.kernels.timelaw import peak_factor
-from nccompile.passes.velocity.settings import PlanSettings
+from nccompile.passes.velocity.limits import limited
+from nccompile.passes.velocity.settings import JERK, PlanSettings
+from nccompile.passes.velocity.smooth import smoothable
 from nccompile.toolpath.columns import EventKind, Floats, Kind, Toolpath
 
 __all__ = ["Planner", "plan", "row_times"]
-
-_UNLIMITED = 1e6
-"""v_limit of segments that nothing but their feed limits [mm/s]: the greatest velocity a machine may have."""
 
 
 def plan(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpath]:
     """Plans the velocities of a path; the chunks that come out are cut where rows settle."""
     planner = Planner(settings)
-    for chunk in chunks:
+    for chunk in smoothable(chunks, settings) if settings.planner == JERK else chunks:
         yield from planner.feed(chunk)
     yield from planner.finish()
 
@@ -90,39 +86,24 @@ def plan_window(
     window: Toolpath, settings: PlanSettings, v_before: float, *, complete: bool
 ) -> tuple[Toolpath, int]:
     """A window with its velocities planned, and how many of its leading rows are settled."""
-    n = len(window)
-    feed = np.where(window.feed > 0.0, window.feed, settings.feed)
-    accel = np.where(window.accel > 0.0, window.accel, settings.accel)
-    decel = np.where(window.decel > 0.0, window.decel, settings.decel)
-    v_limit, v_junction, v_end = np.empty(n), np.empty(n), np.empty(n)
-    t_start, t_end = np.empty_like(window.target), np.empty_like(window.target)
-    axis = settings.planned_limits
-    kernels.row_limits(
-        window.kind, window.starts(), window.target, window.curve, window.curves.plane,
-        window.curves.parameters, window.length, window.profile, axis.velocity, axis.acceleration, axis.rapid,
-        peak_factor(settings.law), feed, accel, decel, v_limit, t_start, t_end,
-    )  # fmt: skip
-    v_limit = np.where(np.isfinite(v_limit), v_limit, np.maximum(feed, _UNLIMITED))
-    chord = 2.0 * sin(0.5 * settings.angle_tolerance)
-    known = junctions(
-        window.kind, window.length, v_limit, np.minimum(accel, decel), t_start, t_end, axis.acceleration,
-        axis.velocity_step, chord, settings.cycle, settings.rule, settings.junction_deviation or 0.0,
-        int(settings.rapid_stops), v_junction,
-    )  # fmt: skip
+    known = len(window)
+    if window.v_limit is None:
+        window, known = limited(window, settings)
+    assert window.v_limit is not None
+    assert window.v_junction is not None
+    v_end = np.empty(len(window))
     settled = kernels.look_ahead(
-        window.kind, window.length, feed, v_limit, v_junction, accel, decel, v_before, known, int(complete),
-        settings.window or 0, v_end,
+        window.kind, window.length, window.feed, window.v_limit, window.v_junction, window.accel, window.decel,
+        v_before, known, int(complete), settings.window or 0, v_end,
     )  # fmt: skip
-    planned = window.replace(
-        feed=feed, accel=accel, decel=decel, v_limit=v_limit, v_junction=v_junction, v_end=v_end
-    )
-    return planned, settled
+    return window.replace(v_end=v_end), settled
 
 
-def row_times(chunk: Toolpath, v_before: float) -> Floats:
+def row_times(chunk: Toolpath, v_before: float, smoothing: float = 0.0) -> Floats:
     """Shape (n,): the time of every segment at override 1 [s]; M functions count 0, dwells their seconds.
 
-    v_before: velocity at the start of the chunk [mm/s], the end velocity of the chunk before it.
+    v_before: velocity at the start of the chunk [mm/s], the end velocity of the chunk before it; smoothing [s]:
+    the mean arrives so much later wherever the path stops.
     """
     assert chunk.v_limit is not None
     assert chunk.v_end is not None
@@ -138,6 +119,7 @@ def row_times(chunk: Toolpath, v_before: float) -> Floats:
         v_before,
         out,
     )
+    out[(chunk.length > 0.0) & (chunk.v_end == 0.0)] += smoothing
     e = chunk.events
     dwell = (e.kind == EventKind.DWELL) & (chunk.kind[e.segment] == Kind.DWELL)
     out[e.segment[dwell]] = e.k[dwell]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, radians
+from math import ceil, inf, radians
 
 import numpy as np
 
@@ -14,12 +14,13 @@ from nccompile.machine.limits import AxisLimits, limits
 from nccompile.machine.model import Machine
 from nccompile.units import seconds_from_us
 
-__all__ = ["LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "WINDOW", "PlanSettings"]
+__all__ = ["JERK", "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "WINDOW", "PlanSettings"]
 
 SOFTMOTION = "softmotion"
 LOOK_AHEAD = "look-ahead"
+JERK = "jerk"
 
-PLANNERS = (SOFTMOTION, LOOK_AHEAD)
+PLANNERS = (SOFTMOTION, LOOK_AHEAD, JERK)
 """Planners by the name that command line and machine file use."""
 
 WINDOW = 30_000
@@ -59,12 +60,26 @@ class PlanSettings:
         return NO_DEVIATION if self.junction_deviation is None else self.junction_rule
 
     @property
+    def smoothing(self) -> float:
+        """Duration T of the mean that the planner `jerk` runs [s], a multiple of the cycle; else 0.
+
+        The acceleration of an axis lies in -A..A, so the jerk of the mean is at most 2 A / T whatever the
+        acceleration does, also under override and stops:  T = max 2 A / J.
+        """
+        jerk = self.limits.jerk
+        if self.planner != JERK or jerk is None:
+            return 0.0
+        bound = np.isfinite(jerk) & np.isfinite(self.limits.acceleration)
+        times = 2.0 * self.limits.acceleration[bound] / jerk[bound]
+        return ceil(float(times.max(initial=0.0)) / self.cycle - 1e-9) * self.cycle
+
+    @property
     def planned_limits(self) -> AxisLimits:
         """The limits that the planner respects: none of the axes' with the manual's rules."""
         if self.planner != SOFTMOTION:
             return self.limits
         none = np.full(len(self.limits.velocity), inf)
-        return AxisLimits(none, none, none, none)
+        return AxisLimits(none, none, none, none, none)
 
     @classmethod
     def from_machine(

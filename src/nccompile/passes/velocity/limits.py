@@ -1,0 +1,54 @@
+"""Limits of segments and junctions: what the program, the machine and the bends of the path allow."""
+
+from __future__ import annotations
+
+from math import sin
+
+import numpy as np
+
+from nccompile.kernels import plan as kernels
+from nccompile.kernels.corners import junctions
+from nccompile.kernels.timelaw import peak_factor
+from nccompile.passes.velocity.settings import JERK, PlanSettings
+from nccompile.toolpath.columns import Toolpath
+
+__all__ = ["limited"]
+
+_UNLIMITED = 1e6
+"""v_limit of segments that nothing but their feed limits [mm/s]: the greatest velocity a machine may have."""
+
+
+def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
+    """The chunk with feed, accel and decel in force, v_limit and v_junction; v_end is 0.
+
+    Returns it with the number of leading rows whose junction is known: the last row that moves waits for the
+    next one.
+    """
+    n = len(chunk)
+    feed = np.where(chunk.feed > 0.0, chunk.feed, settings.feed)
+    accel = np.where(chunk.accel > 0.0, chunk.accel, settings.accel)
+    decel = np.where(chunk.decel > 0.0, chunk.decel, settings.decel)
+    v_limit, v_junction = np.empty(n), np.empty(n)
+    t_start, t_end = np.empty_like(chunk.target), np.empty_like(chunk.target)
+    axis = settings.planned_limits
+    kernels.row_limits(
+        chunk.kind, chunk.starts(), chunk.target, chunk.curve, chunk.curves.plane, chunk.curves.parameters,
+        chunk.length, chunk.profile, axis.velocity, axis.acceleration, axis.rapid, peak_factor(settings.law),
+        feed, accel, decel, v_limit, t_start, t_end,
+    )  # fmt: skip
+    if settings.planner == JERK and axis.jerk is not None:
+        kernels.jerk_limits(
+            chunk.kind, chunk.starts(), chunk.target, chunk.curve, chunk.curves.plane, chunk.curves.parameters,
+            chunk.length, chunk.profile, axis.jerk, accel, decel, v_limit,
+        )  # fmt: skip
+    v_limit = np.where(np.isfinite(v_limit), v_limit, np.maximum(feed, _UNLIMITED))
+    chord = 2.0 * sin(0.5 * settings.angle_tolerance)
+    known = junctions(
+        chunk.kind, chunk.length, v_limit, np.minimum(accel, decel), t_start, t_end, axis.acceleration,
+        axis.velocity_step, chord, settings.cycle, settings.rule, settings.junction_deviation or 0.0,
+        int(settings.rapid_stops), v_junction,
+    )  # fmt: skip
+    planned = chunk.replace(
+        feed=feed, accel=accel, decel=decel, v_limit=v_limit, v_junction=v_junction, v_end=np.zeros(n)
+    )
+    return planned, known

@@ -1,0 +1,74 @@
+"""Rows cut into parts that the planner treats as rows of their own; the path stays the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from nccompile.kernels.curves import NODES
+from nccompile.kernels.erosion import cut_rows
+from nccompile.kernels.interpolator import CONTINUES
+from nccompile.toolpath.columns import CURVE_PARAMETERS, Curves, EventKind, Events, Floats, Ints, Toolpath
+
+__all__ = ["Parts", "parted"]
+
+_TAKEN = ("kind", "feed", "accel", "decel", "mark", "radius", "profile", "line", "v_limit")
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Parts of the rows of a chunk, in order: row i4 (m,); p0, p1 f8 (m,) shares of the row's length."""
+
+    row: Ints
+    p0: Floats
+    p1: Floats
+
+
+def parted(path: Toolpath, parts: Parts) -> Toolpath:
+    """A limited chunk with its rows cut; switch points keep their place on the way.
+
+    All parts but the last of a row carry the bit CONTINUES in `profile` and its v_limit as v_junction.
+    """
+    m = len(parts.row)
+    if m == len(path):
+        return path
+    assert path.v_limit is not None
+    assert path.v_junction is not None
+    row = parts.row
+    target = np.empty((m, len(path.axes)))
+    parameters, length = np.zeros((m, CURVE_PARAMETERS)), np.empty(m)
+    cut_rows(
+        path.kind, path.starts(), path.target, path.curve, path.curves.plane, path.curves.parameters, path.length,
+        np.empty(NODES), np.empty(NODES), row, parts.p0, parts.p1, target, parameters, length,
+    )  # fmt: skip
+    curved = np.flatnonzero(path.curve[row] >= 0)
+    curve = np.full(m, -1, np.int32)
+    curve[curved] = np.arange(len(curved), dtype=np.int32)
+    inner = np.append(row[1:] == row[:-1], False)
+    return path.replace(
+        **{name: getattr(path, name)[row] for name in _TAKEN if name not in ("mark", "profile")},
+        target=target, curve=curve, length=length,
+        curves=Curves(path.curves.plane[path.curve[row[curved]]], parameters[curved]),
+        events=_events(path, parts),
+        v_junction=np.where(inner, path.v_limit[row], path.v_junction[row]),
+        profile=path.profile[row] | (inner.astype(np.uint16) << np.uint16(CONTINUES)),
+        mark=np.where(inner, 0, path.mark[row]).astype(np.uint16),
+        v_end=np.zeros(m),
+    )  # fmt: skip
+
+
+def _events(path: Toolpath, parts: Parts) -> Events:
+    """The events at the parts where their positions lie."""
+    e = path.events
+    if not len(e):
+        return e
+    first = np.searchsorted(parts.row, e.segment)
+    last = np.searchsorted(parts.row, e.segment, side="right") - 1
+    part, position = first.copy(), e.position.copy()
+    for i in np.flatnonzero((first < last) & (e.kind == EventKind.SWITCH)):
+        inside = slice(int(first[i]), int(last[i]) + 1)
+        part[i] += np.searchsorted(parts.p0[inside], e.position[i], side="right") - 1
+        p0, p1 = parts.p0[part[i]], parts.p1[part[i]]
+        position[i] = min(max((e.position[i] - p0) / (p1 - p0), 0.0), 1.0)
+    return Events(part.astype(np.int32), e.kind, e.number, position, e.k, e.l, e.o)
