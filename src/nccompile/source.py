@@ -110,10 +110,12 @@ class LargeSource(Source):
     """A source whose bytes stay in their file; lines are decoded when they are asked for.
 
     Texts and places are those of a `Source` of the same bytes.  `text` and `lines` read everything.
+    part: bytes that are read at a time.
     """
 
-    def __init__(self, name: str, file: BinaryIO) -> None:
+    def __init__(self, name: str, file: BinaryIO, part: int = _PART) -> None:
         object.__setattr__(self, "name", name)
+        self.part = part
         self._file = file
         self._lock = Lock()
         self._known = [1], [0]  # lines and their places, ascending
@@ -133,8 +135,8 @@ class LargeSource(Source):
 
     def parts(self) -> Iterator[bytes]:
         """The bytes of the file in order."""
-        for place in range(0, self.size, _PART):
-            yield self.read_at(place, _PART)
+        for place in range(0, self.size, self.part):
+            yield self.read_at(place, self.part)
 
     @cached_property
     def sha256(self) -> str:
@@ -197,8 +199,8 @@ class LargeSource(Source):
         """The number of the line that a place of the file lies in."""
         at = max(bisect_right(self._known[1], place) - 1, 0)
         ends, cr = 0, False
-        for begin in range(self._known[1][at], place, _PART):
-            part = self.read_at(begin, min(_PART, place - begin))
+        for begin in range(self._known[1][at], place, self.part):
+            part = self.read_at(begin, min(self.part, place - begin))
             ends += part.count(b"\n") + part.count(b"\r") - part.count(b"\r\n") - (cr and part[:1] == b"\n")
             cr = part.endswith(b"\r")
         return self._known[0][at] + ends
@@ -207,13 +209,13 @@ class LargeSource(Source):
         """The bytes between a place of the file and the start of its line, at most `MOST_LINE` of them."""
         begin, found = place, b""
         while begin > self.begin and len(found) < MOST_LINE and b"\n" not in found and b"\r" not in found:
-            begin = max(begin - _PART, self.begin)
+            begin = max(begin - self.part, self.begin)
             found = self.read_at(begin, place - begin)
         return found[max(found.rfind(b"\n"), found.rfind(b"\r")) + 1 :]
 
     def _raw_lines(self, place: int, number: int) -> Iterator[bytes]:
         rest = b""
-        while part := self.read_at(place, _PART):
+        while part := self.read_at(place, self.part):
             place += len(part)
             rest += part
             if len(rest) > MOST_LINE:

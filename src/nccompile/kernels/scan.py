@@ -81,7 +81,7 @@ def scan(
         first = words
         first_hard = hards
         good = True
-        if i >= end or blocks >= most_blocks or words + 1 >= most_words:
+        if i >= end or blocks >= most_blocks or words >= most_words:
             break
         while i < end:
             c = int(data[i])

@@ -23,6 +23,8 @@ __all__ = [
     "Node",
     "ReadSource",
     "Unread",
+    "placed",
+    "placed_block",
     "plain_block",
     "plain_header",
     "read_by_grammar",
@@ -99,22 +101,28 @@ def read_by_grammar(line: int, text: str) -> Node:
     node = read(text)
     if isinstance(node, int):
         return Unread(explain(text, node), _unsound(line, text))
-    return _placed(node, line)
+    return placed(node, line)
 
 
-def _placed(node: Block | Header, line: int) -> Block | Header:
-    """The node with its line number in every part."""
-    if line == 1 or isinstance(node, Header):
+def placed(node: Block | Header, line: int) -> Block | Header:
+    """The node on another line."""
+    if line == node.line or isinstance(node, Header):
         return node._replace(line=line)
-    number = node.number
+    return placed_block(node, line)
+
+
+def placed_block(block: Block, line: int) -> Block:
+    """The block with another line number in every part."""
+    number = block.number
     return Block(
         line,
-        node.column,
-        node.end,
+        block.column,
+        block.end,
         None if number is None else number._replace(line=line),
-        tuple([Word(w[0], w[1], w[2], line, w[4]) for w in node.words]),
-        node.skip,
-        tuple([c._replace(line=line) for c in node.comments]) if node.comments else (),
+        tuple([Word(w[0], w[1], w[2], line, w[4]) for w in block.words]),
+        block.skip,
+        tuple([c._replace(line=line) for c in block.comments]) if block.comments else (),
+        block.sound,
     )
 
 

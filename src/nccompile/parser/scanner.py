@@ -16,10 +16,7 @@ import numpy as np
 from nccompile.kernels import scan as kernels
 from nccompile.source import MOST_LINE, LargeSource, too_long
 
-__all__ = ["PART", "Survey", "Table", "survey", "tables"]
-
-PART = 1 << 20
-"""Bytes of a part of the file, unless a line is longer."""
+__all__ = ["Survey", "Table", "survey", "tables"]
 
 _WORDS = 1 << 18
 _BLOCKS = 1 << 16
@@ -92,7 +89,7 @@ def survey(source: LargeSource, letters: str) -> Survey:
     wanted = np.zeros(128, np.uint8)
     wanted[[ord(letter) for letter in letters]] = 1
     end = _text_end(source)
-    for place, data in _whole_lines(source, PART):
+    for place, data in _whole_lines(source):
         length = min(len(data), end - place)
         control = kernels.survey(np.frombuffer(data, np.int8), length, found, wanted)
         if control >= 0:
@@ -106,10 +103,10 @@ def survey(source: LargeSource, letters: str) -> Survey:
 def _text_end(source: LargeSource) -> int:
     """Where the text ends: an end-of-file mark of old systems and what fills up the file are not part of it."""
     end = source.size
-    if source.read_at(end - 1, 1) != b"\x1a":
+    if end == 0 or source.read_at(end - 1, 1) != b"\x1a":
         return end
     while end > 0:
-        part = source.read_at(max(end - PART, 0), min(PART, end))
+        part = source.read_at(max(end - source.part, 0), min(source.part, end))
         bare = part.rstrip(_TAIL)
         end -= len(part) - len(bare)
         if bare:
@@ -117,10 +114,10 @@ def _text_end(source: LargeSource) -> int:
     return end
 
 
-def tables(source: LargeSource, part: int = PART) -> Iterator[Table]:
+def tables(source: LargeSource) -> Iterator[Table]:
     """The blocks of a program in order, in tables of some ten thousand; raises UsageError for a line without end."""
     line = 1
-    for place, data in _whole_lines(source, part):
+    for place, data in _whole_lines(source):
         begin = 0
         while begin < len(data):
             table = Table(source, data)
@@ -133,15 +130,15 @@ def tables(source: LargeSource, part: int = PART) -> Iterator[Table]:
             yield table
 
 
-def _whole_lines(source: LargeSource, part: int) -> Iterator[tuple[int, bytes]]:
+def _whole_lines(source: LargeSource) -> Iterator[tuple[int, bytes]]:
     """The file as (place, bytes); parts end behind a line end."""
     place, rest = source.begin, b""
     at = place
     while True:
-        read = source.read_at(at, part)
+        read = source.read_at(at, source.part)
         at += len(read)
         data = rest + read
-        if len(read) < part:
+        if len(read) < source.part:
             yield place, data
             return
         cut = _last_line_end(data)
