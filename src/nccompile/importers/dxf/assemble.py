@@ -30,6 +30,7 @@ class Moves:
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)
     accel: float = 0.0
     decel: float = 0.0
+    tool: int | None = None
     notes: dict[int, list[str]] = field(default_factory=dict)
     rows: int = 0
     _kind: list[npt.NDArray[np.uint8]] = field(default_factory=list)

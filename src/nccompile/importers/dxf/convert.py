@@ -18,7 +18,6 @@ from nccompile.importers.dxf.job import Job
 from nccompile.importers.dxf.join import Paths, join_pieces
 from nccompile.importers.dxf.leads import Obstacles
 from nccompile.importers.dxf.machining import Prepared, Workshop, cut, finish, prepare
-from nccompile.importers.dxf.nest import outlines
 from nccompile.importers.dxf.order import rapid_length
 from nccompile.importers.dxf.pieces import Pieces, lengths, transform
 from nccompile.importers.dxf.read import Drawing
@@ -84,7 +83,7 @@ def convert(drawing: Drawing, job: Job, options: ConvertOptions, found: Diagnost
         paths = arcs_for_cubics(paths, options.tolerance)
     paths = on_grid(paths, options.decimals)
     result.layers = _layer_statistics(paths, drawing.layers)
-    obstacles = Obstacles(outlines(paths))
+    obstacles = Obstacles(paths)
     shop = Workshop(job, found, file, options.tolerance, options.decimals, options.seed, obstacles)
     if options.split == "layers":
         for number in np.unique(paths.pieces.layer[paths.first[:-1]]).tolist():
@@ -157,7 +156,7 @@ def _layer_statistics(paths: Paths, layers: Sequence[str]) -> dict[str, tuple[in
     layer = paths.pieces.layer[paths.first[:-1]]
     return {
         layers[number]: (int((layer == number).sum()), float(length[layer == number].sum()))
-        for number in np.unique(layer).tolist()
+        for number in sorted(np.unique(layer).tolist(), key=lambda number: layers[number])
     }
 
 

@@ -11,6 +11,7 @@ what then still does not fit is left out, and said so.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import cos, pi, radians, sin
 from typing import Any
 
@@ -18,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.importers.dxf.job import Lead
+from nccompile.importers.dxf.join import Paths
 from nccompile.importers.dxf.pieces import Complexes, Pieces, arc_row, flatten, line_row, reverse
 
 __all__ = ["FINE", "Obstacles", "Room", "lead_in", "lead_out", "line_string"]
@@ -25,10 +27,10 @@ __all__ = ["FINE", "Obstacles", "Room", "lead_in", "lead_out", "line_string"]
 SHRINKS = 4
 """A lead is halved this often before it is given up."""
 
-FINE = 0.01
+FINE = 1e-4
 """Chord height [mm] of what is compared."""
 
-OWN = 0.02
+OWN = 0.05
 """The part of a lead next to the contour in which touching it is meant."""
 
 
@@ -51,12 +53,16 @@ class Room:
 
 
 class Obstacles:
-    """All contours of a drawing, searchable by distance."""
+    """All contours of a drawing, searchable by distance; nothing is built before the first lead asks."""
 
-    def __init__(self, lines: list[Complexes]) -> None:
+    def __init__(self, paths: Paths) -> None:
+        self._paths = paths
+
+    @cached_property
+    def _tree(self) -> Any:
         import shapely  # noqa: PLC0415
 
-        self._tree = shapely.STRtree([line_string(z) for z in lines])
+        return shapely.STRtree([line_string(z) for z in flatten(self._paths.pieces, FINE)])
 
     def are_clear(self, points: Complexes, distances: Floats) -> bool:
         """Whether every point keeps its distance [mm] from every contour, and their polyline crosses none."""
@@ -119,4 +125,4 @@ def _fits(made: Pieces, room: Room) -> bool:
     if line_string(probes).intersects(line_string(room.own)):
         return False
     more = np.minimum(away**2 / (4.0 * total), room.clearance or 0.05 * total)
-    return room.obstacles.are_clear(probes, room.beside + more - FINE * 0.1 * (room.beside > 0.0))
+    return room.obstacles.are_clear(probes, room.beside + more - 2.0 * FINE * (room.beside > 0.0))

@@ -195,11 +195,14 @@ def _offset(
 def cut(prepared: Prepared, rows: Indices, moves: Moves, shop: Workshop) -> None:
     """Adds the moves of some of the operation's paths, in their order."""
     operation = prepared.operation
-    if operation.tool is not None and len(rows):
-        moves.note(f"tool {operation.tool}" + (f", {operation.name}" if operation.name else ""))
-        moves.wait(Kind.M_FUNCTION, shop.job.program.tool_change_m, float(operation.tool))
-    elif operation.name:
-        moves.note(operation.name)
+    title = [f"tool {operation.tool}"] * (operation.tool is not None) + [operation.name] * bool(
+        operation.name
+    )
+    if title and len(rows):
+        moves.note(", ".join(title))
+    if operation.tool not in {None, moves.tool} and len(rows):
+        moves.tool = operation.tool
+        moves.wait(Kind.M_FUNCTION, shop.job.program.tool_change_m, float(operation.tool or 0))
     moves.accel, moves.decel = operation.accel or 0.0, operation.decel or 0.0
     if operation.kind == "drill":
         for i in rows.tolist():
