@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from math import cos, pi, sin
 
 import numpy as np
@@ -11,22 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from nccompile import kernels
 from nccompile.passes.base import Pass
 from nccompile.passes.fit_arcs import FitArcs
 from nccompile.passes.fit_splines import FitSplines
 from nccompile.passes.measure import samples
 from nccompile.toolpath.columns import Kind, Plane, Toolpath
 from tests.passes.paths import SIZES, Sketch, paths, run, same
-
-
-@pytest.fixture(autouse=True)
-def _compiled() -> Iterator[None]:
-    before = kernels.compiled()
-    kernels.use(compiled=True)
-    yield
-    kernels.use(compiled=before)
-
 
 FITS: list[Pass] = [FitArcs(), FitArcs(tolerance=0.05, least=2), FitSplines(), FitSplines(tolerance=0.05)]
 

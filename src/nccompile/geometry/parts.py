@@ -9,6 +9,7 @@ All functions take one segment and plain floats; passes that work on many lines 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import atan2, hypot, pi
 from typing import TypeAlias
 
 import numpy as np
@@ -17,7 +18,7 @@ from nccompile.geometry.curve import ROW, Floats
 from nccompile.kernels import curves as kernels
 from nccompile.kernels.curves import ARC, ELLIPSE, NODES
 
-__all__ = ["Way", "curvature_at", "cut", "embed", "reparameter", "reverse", "tangent_at"]
+__all__ = ["Way", "arc_row", "curvature_at", "cut", "embed", "reparameter", "reverse", "tangent_at"]
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -61,6 +62,20 @@ def embed(plane: int, u: float, v: float, w: float) -> Vector:
     if plane == 2:
         return w, u, v
     return u, v, w
+
+
+def arc_row(x0: float, y0: float, x1: float, y1: float, cx: float, cy: float, ccw: bool) -> list[float]:
+    """Centre, radius, start angle and sweep of the arc about (cx, cy), which is equally far from both ends.
+
+    The sweep comes from cross and dot product of both radii: a small one keeps all its digits.
+    """
+    ax, ay, bx, by = x0 - cx, y0 - cy, x1 - cx, y1 - cy
+    sweep = atan2(ax * by - ay * bx, ax * bx + ay * by)
+    if ccw and sweep <= 0.0:
+        sweep += 2.0 * pi
+    if not ccw and sweep >= 0.0:
+        sweep -= 2.0 * pi
+    return [cx, cy, hypot(ax, ay), atan2(ay, ax), sweep]
 
 
 class Way:

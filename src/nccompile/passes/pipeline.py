@@ -29,6 +29,8 @@ from nccompile.passes.flatten import Flatten
 from nccompile.passes.limit_arc_feed import LimitArcFeed
 from nccompile.passes.move_start import MoveStart
 from nccompile.passes.reverse import Reverse
+from nccompile.passes.round_corners import RoundCorners
+from nccompile.passes.smooth_corners import SmoothCorners
 from nccompile.passes.split import Split
 from nccompile.passes.transform import Transform
 from nccompile.toolpath.columns import Toolpath
@@ -41,6 +43,8 @@ ORDER: tuple[type[Pass], ...] = (
     MoveStart,
     Split,
     Compress,
+    RoundCorners,
+    SmoothCorners,
     FitArcs,
     FitSplines,
     Flatten,
