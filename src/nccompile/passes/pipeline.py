@@ -21,6 +21,7 @@ from dataclasses import MISSING, Field, dataclass, field, fields
 from itertools import pairwise
 
 from nccompile.errors import UsageError
+from nccompile.passes.avoid_loops import AvoidLoops
 from nccompile.passes.base import Context, Diagnose, Pass, Report
 from nccompile.passes.compress import Compress
 from nccompile.passes.fit_arcs import FitArcs
@@ -43,6 +44,7 @@ ORDER: tuple[type[Pass], ...] = (
     MoveStart,
     Split,
     Compress,
+    AvoidLoops,
     RoundCorners,
     SmoothCorners,
     FitArcs,

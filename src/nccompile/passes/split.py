@@ -21,7 +21,7 @@ from nccompile.passes.base import Context, Pass, bounded
 from nccompile.passes.edit import Draft, Shape
 from nccompile.toolpath.columns import Floats, Kind, Toolpath
 
-__all__ = ["Split", "part_of", "place_at"]
+__all__ = ["Split", "part_at", "part_of", "place_at", "position_at"]
 
 
 @dataclass(frozen=True)
@@ -96,3 +96,27 @@ def part_of(path: Toolpath, i: int, p0: float, p1: float) -> Shape | None:
     kind, p = int(path.kind[i]), path.curves.parameters[row].tolist()
     way = Way(kind, p)
     return int(path.curves.plane[row]), cut(kind, p, way.parameter(p0), way.parameter(p1))
+
+
+def part_at(path: Toolpath, i: int, u0: float, u1: float) -> tuple[Shape | None, float, float]:
+    """The curve of the part u0..u1 (curve parameters) of row i, and the shares of the length it begins and ends at."""
+    row = int(path.curve[i])
+    if row < 0:
+        return None, u0, u1
+    kind, p = int(path.kind[i]), path.curves.parameters[row].tolist()
+    way = Way(kind, p)
+    return (int(path.curves.plane[row]), cut(kind, p, u0, u1)), way.share(u0), way.share(u1)
+
+
+def position_at(path: Toolpath, i: int, u: float) -> Floats:
+    """The position on all axes at curve parameter u of row i. Shape (k,)."""
+    start = path.start if i == 0 else path.target[i - 1]
+    end = path.target[i]
+    row = int(path.curve[i])
+    if row < 0:
+        return np.asarray(start + u * (end - start))
+    p, kind = path.curves.parameters[row], int(path.kind[i])
+    share = Way(kind, p.tolist()).share(u)
+    out: Floats = np.asarray(start + share * (end - start))
+    out[:3] = place_on(kind, int(path.curves.plane[row]), p, start, end, u)
+    return out
