@@ -185,15 +185,15 @@ def intersections(
                 u = (i + u) / m
                 v = (j + v) / n
                 good = False
-                for _ in range(30):
+                for _ in range(16):
                     u = min(max(u, -0.02), 1.02)
                     v = min(max(v, -0.02), 1.02)
                     px, py = _at(kind, p, a, b, u)
                     qx, qy = _at(other, q, c, d, v)
                     ex = qx - px
                     ey = qy - py
-                    if abs(ex) + abs(ey) <= 1e-11 * (1.0 + abs(px) + abs(py)):
-                        good = True
+                    good = abs(ex) + abs(ey) <= _SLACK
+                    if abs(ex) + abs(ey) <= 1e-13 + 2e-16 * (abs(px) + abs(py)):
                         break
                     sx, sy = _slope(kind, p, a, b, u)
                     tx, ty = _slope(other, q, c, d, v)
