@@ -29,6 +29,7 @@ from nccompile.cli.fmt import format_programs
 from nccompile.cli.import_dxf import import_dxf
 from nccompile.cli.info import info
 from nccompile.cli.lint import lint_programs
+from nccompile.cli.lsp import serve
 from nccompile.cli.machine import check
 from nccompile.cli.plot import plot
 from nccompile.cli.run import run_program
@@ -93,6 +94,7 @@ app.command("plot", cls=Guarded)(plot)
 app.command("explain", cls=Guarded)(explain)
 app.command("lint", cls=Guarded)(lint_programs)
 app.command("fmt", cls=Guarded)(format_programs)
+app.command("lsp", cls=Guarded)(serve)
 app.command("import-dxf", cls=Guarded)(import_dxf)
 app.command("export-dxf", cls=Guarded)(export_dxf)
 _machine.command("check", cls=Guarded)(check)

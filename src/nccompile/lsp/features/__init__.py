@@ -1,0 +1,1 @@
+"""What an editor shows: functions of a document and its analysis, without protocol or state."""

@@ -1,0 +1,86 @@
+"""The modal state behind a block: instructions in force, F, E, D, position."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable
+from typing import NamedTuple
+
+from nccompile.decoder.tables import INSTRUCTIONS, Group
+from nccompile.lint.program import Program
+from nccompile.lsp.analysis import Analysis
+from nccompile.parser import Word
+
+__all__ = ["State", "state_behind"]
+
+_SHOWN = (Group.DRIVE, Group.DISTANCE, Group.CENTRE, Group.TOOL, Group.CORNER, Group.LOOP)
+_DEFAULTS = {Group.DISTANCE: 90, Group.CENTRE: 99}
+_ENDS = {40, 50, 60}
+
+
+class State(NamedTuple):
+    """instructions: G codes in force;  feed, accel, decel, radius: as written, empty if none;  position by axis.
+
+    Blocks count in written order, as if no jump were taken; the position is that of the toolpath.
+    """
+
+    instructions: tuple[int, ...]
+    feed: str
+    accel: str
+    decel: str
+    radius: str
+    position: dict[str, float]
+
+
+def state_behind(analysis: Analysis, line: int) -> State:
+    """The state behind a line, from 1."""
+    program = analysis.program
+    lines = [block.line for block in program.blocks]
+    at = bisect_right(lines, line) - 1
+    in_force = []
+    for group in _SHOWN:
+        code = _last_of(program, group, at) or _DEFAULTS.get(group, 0 if group is Group.DRIVE else None)
+        if code is not None and code not in _ENDS:
+            in_force.append(code)
+    return State(
+        tuple(in_force),
+        _last(program, "F", at, lambda word, code: code != 4),
+        _last(program, "E", at, lambda word, _: not word.text[1:].startswith("-")),
+        _last(program, "E", at, lambda word, _: word.text[1:].startswith("-")),
+        _last(program, "D", at, lambda word, code: code not in {36, 37}),
+        _position(analysis, line),
+    )
+
+
+def _last(program: Program, letter: str, at: int, counts: Callable[[Word, int | None], bool]) -> str:
+    """The value of the last word of a letter up to block `at`, as written."""
+    words = program.words(letter)
+    place = bisect_right(words, at, key=lambda pair: pair[0])
+    for block, word in reversed(words[:place]):
+        if counts(word, program.codes[block]):
+            return word.number
+    return ""
+
+
+def _last_of(program: Program, group: Group, at: int) -> int | None:
+    words = program.words("G")
+    place = bisect_right(words, at, key=lambda pair: pair[0])
+    for block, _ in reversed(words[:place]):
+        code = program.codes[block]
+        if code is not None and code in INSTRUCTIONS and INSTRUCTIONS[code].group is group:
+            return code
+    return None
+
+
+def _position(analysis: Analysis, line: int) -> dict[str, float]:
+    """The position behind the last segment that stems from the line or one above it."""
+    if not analysis.is_sound:
+        return {}
+    path = analysis.path
+    rows = analysis.rows(line)
+    if rows:
+        values = path.target[rows[-1]]
+    else:
+        before = (path.line <= line).nonzero()[0]
+        values = path.target[before[-1]] if len(before) else path.start
+    return {letter: float(value) for letter, value in zip(path.axes, values, strict=True)}

@@ -1,0 +1,169 @@
+"""Registers what the server can do."""
+
+from __future__ import annotations
+
+from lsprotocol import types
+
+from nccompile.lsp import convert
+from nccompile.lsp.features import actions, completion, hints, hover, navigation, outline, tokens
+from nccompile.lsp.server import NcServer
+
+__all__ = ["make_server"]
+
+_WATCHED = ["**/nccompile.toml", "**/pyproject.toml", "**/*.toml"]
+
+
+def make_server() -> NcServer:
+    """A server with all features, not started."""
+    server = NcServer()
+    _documents(server)
+    _reading(server)
+    _navigating(server)
+    _changing(server)
+    return server
+
+
+def _documents(server: NcServer) -> None:
+    @server.feature(types.TEXT_DOCUMENT_DID_OPEN)
+    def opened(params: types.DidOpenTextDocumentParams) -> None:
+        server.opened(params)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CHANGE)
+    def changed(params: types.DidChangeTextDocumentParams) -> None:
+        server.changed(params)
+
+    @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
+    def closed(params: types.DidCloseTextDocumentParams) -> None:
+        server.session.close(params.text_document.uri)
+
+    @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def files_changed(_: types.DidChangeWatchedFilesParams) -> None:
+        server.session.settings_changed()
+
+    @server.feature(types.SHUTDOWN)
+    def shut_down(_: None) -> None:
+        server.session.shut_down()
+
+    @server.feature(types.INITIALIZED)
+    def initialized(_: types.InitializedParams) -> None:
+        workspace = server.client_capabilities.workspace
+        watching = None if workspace is None else workspace.did_change_watched_files
+        if watching is None or not watching.dynamic_registration:
+            return
+        options = types.DidChangeWatchedFilesRegistrationOptions(
+            [types.FileSystemWatcher(pattern) for pattern in _WATCHED]
+        )
+        server.client_register_capability(
+            types.RegistrationParams(
+                [types.Registration("settings", types.WORKSPACE_DID_CHANGE_WATCHED_FILES, options)]
+            )
+        )
+
+
+def _reading(server: NcServer) -> None:
+    """What is shown beside the text."""
+
+    @server.feature(types.TEXT_DOCUMENT_HOVER)
+    async def hovered(params: types.HoverParams) -> types.Hover | None:
+        document, analysis = await server.analysis(params.text_document.uri)
+        text = hover.hover_text(document, analysis, convert.place(params.position))
+        content = types.MarkupContent(types.MarkupKind.Markdown, text or "")
+        return None if text is None else types.Hover(content)
+
+    @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
+    async def hinted(params: types.InlayHintParams) -> list[types.InlayHint]:
+        document, analysis = await server.analysis(params.text_document.uri, with_times=True)
+        return hints.hints(document, analysis, params.range.start.line, params.range.end.line)
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
+    async def lenses(params: types.CodeLensParams) -> list[types.CodeLens]:
+        document, analysis = await server.analysis(params.text_document.uri, with_times=True)
+        return hints.lenses(document, analysis)
+
+    legend = types.SemanticTokensRegistrationOptions(tokens.LEGEND, full=True, range=True)
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend)
+    def all_tokens(params: types.SemanticTokensParams) -> types.SemanticTokens:
+        return types.SemanticTokens(tokens.tokens(server.document(params.text_document.uri)))
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend)
+    def some_tokens(params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
+        document, asked = server.document(params.text_document.uri), params.range
+        return types.SemanticTokens(tokens.tokens(document, asked.start.line, asked.end.line))
+
+
+def _navigating(server: NcServer) -> None:
+    """Ways through the text."""
+
+    @server.feature(types.TEXT_DOCUMENT_DEFINITION)
+    def definition(params: types.DefinitionParams) -> list[types.Location]:
+        document = server.document(params.text_document.uri)
+        return navigation.definitions(document, convert.place(params.position))
+
+    @server.feature(types.TEXT_DOCUMENT_REFERENCES)
+    def references(params: types.ReferenceParams) -> list[types.Location]:
+        document = server.document(params.text_document.uri)
+        declared = params.context.include_declaration
+        return navigation.references(document, convert.place(params.position), declared)
+
+    @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    def symbols(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
+        return outline.symbols(server.document(params.text_document.uri))
+
+    @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
+    def foldings(params: types.FoldingRangeParams) -> list[types.FoldingRange]:
+        return outline.foldings(server.document(params.text_document.uri))
+
+
+def _changing(server: NcServer) -> None:
+    """Changes of the text."""
+
+    @server.feature(
+        types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=completion.TRIGGERS)
+    )
+    def completed(params: types.CompletionParams) -> list[types.CompletionItem]:
+        document = server.document(params.text_document.uri)
+        return completion.completions(document, convert.place(params.position))
+
+    @server.feature(types.TEXT_DOCUMENT_PREPARE_RENAME)
+    def prepared(params: types.PrepareRenameParams) -> types.Range | None:
+        document = server.document(params.text_document.uri)
+        return navigation.prepared(document, convert.place(params.position))
+
+    @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
+    def renamed(params: types.RenameParams) -> types.WorkspaceEdit:
+        document = server.document(params.text_document.uri)
+        try:
+            edits = navigation.renamed(document, convert.place(params.position), params.new_name)
+        except navigation.CannotRename as error:
+            raise server.refused(error) from None
+        return types.WorkspaceEdit(changes={document.uri: edits})
+
+    @server.feature(types.TEXT_DOCUMENT_FORMATTING)
+    def formatted(params: types.DocumentFormattingParams) -> list[types.TextEdit]:
+        return actions.formatted(server.document(params.text_document.uri))
+
+    @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
+    def formatted_lines(params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:
+        document, asked = server.document(params.text_document.uri), params.range
+        last = asked.end.line - (asked.end.character == 0 and asked.end.line > asked.start.line)
+        return actions.formatted_lines(document, asked.start.line, last)
+
+    kinds = ["quickfix", actions.FIX_ALL, actions.RENUMBER]
+
+    @server.feature(
+        types.TEXT_DOCUMENT_CODE_ACTION,
+        types.CodeActionOptions(code_action_kinds=kinds, resolve_provider=True),
+    )
+    async def acted(params: types.CodeActionParams) -> list[types.CodeAction]:
+        document, analysis = await server.analysis(params.text_document.uri)
+        only = (
+            None
+            if params.context.only is None
+            else [str(getattr(k, "value", k)) for k in params.context.only]
+        )
+        return actions.actions(document, analysis, params.range, only)
+
+    @server.feature(types.CODE_ACTION_RESOLVE)
+    async def resolved(action: types.CodeAction) -> types.CodeAction:
+        return await server.resolve(action)

@@ -1,0 +1,168 @@
+"""The open documents and the work in the background.
+
+    edit ──> changed lines are read, known findings move ──> published at once
+      └────> after a pause: findings of the whole text   ──> published, `nccompile/checked`
+                └────> times of the path                  ──> hints and lenses
+
+The analysis of a version that was edited meanwhile is given up at the next chunk of its toolpath.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+from nccompile.errors import NccompileError
+from nccompile.lint.config import Config, config_for
+from nccompile.lint.program import Cancelled
+from nccompile.lsp.analysis import Analysis, Settings, Times, analyse, timed
+from nccompile.lsp.document import Document
+from nccompile.machine.model import default_machine, load
+
+__all__ = ["Outdated", "Session", "Work"]
+
+LARGE = 3000
+"""Lines from which a pause in typing is waited for."""
+
+PAUSE, LONG_PAUSE = 0.02, 0.2
+"""Pause before the analysis of a small and of a large document [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+class Outdated(Exception):
+    """The document changed while something was computed for it."""
+
+
+class Work:
+    """The analysis of one version of a document, under way or done."""
+
+    def __init__(self, document: Document, loop: asyncio.AbstractEventLoop) -> None:
+        self.document = document
+        self.version = document.version
+        self.wanted = True
+        self.checked: asyncio.Future[Analysis] = loop.create_future()
+        self.timed: asyncio.Future[Analysis] = loop.create_future()
+        self.task: asyncio.Task[None] | None = None
+
+    def is_wanted(self) -> bool:
+        """Whether the version is still the newest; asked from the thread that does the work."""
+        return self.wanted
+
+    def drop(self) -> None:
+        """The version is not wanted any more."""
+        self.wanted = False
+        for future in (self.checked, self.timed):
+            future.cancel()
+
+
+class Session:
+    """What the server knows; `publish` shows the findings of a document, `say` a message."""
+
+    def __init__(
+        self,
+        publish: Callable[[Document, bool], None],
+        say: Callable[[str], None],
+        done: Callable[[Document, float], None],
+    ) -> None:
+        self.documents: dict[str, Document] = {}
+        self._publish, self._say, self._done = publish, say, done
+        self._works: dict[str, Work] = {}
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="analysis")
+        self._said: set[str] = set()
+
+    def open(self, document: Document) -> None:
+        """A document was opened, or opened again."""
+        self.documents[document.uri] = document
+        self.changed(document)
+
+    def close(self, uri: str) -> None:
+        """A document was closed; its findings go."""
+        work = self._works.pop(uri, None)
+        if work is not None:
+            work.drop()
+        document = self.documents.pop(uri, None)
+        if document is not None:
+            document.shown = []
+            self._publish(document, False)
+
+    def changed(self, document: Document) -> None:
+        """A document has a new text or new settings: it is checked anew."""
+        before = self._works.get(document.uri)
+        if before is not None:
+            before.drop()
+        loop = asyncio.get_running_loop()
+        work = self._works[document.uri] = Work(document, loop)
+        work.task = loop.create_task(self._run(work))
+
+    def settings_changed(self) -> None:
+        """Settings or machine files changed: all documents are checked anew."""
+        self._said.clear()
+        for document in self.documents.values():
+            self.changed(document)
+
+    def shut_down(self) -> None:
+        """Gives up what is under way."""
+        for work in self._works.values():
+            work.drop()
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    async def analysis(self, uri: str, *, with_times: bool = False) -> tuple[Document, Analysis]:
+        """A document and the analysis of its newest version.
+
+        Raises:   KeyError: it is not open;  Outdated: it was edited meanwhile.
+        """
+        work = self._works[uri]
+        future = work.timed if with_times else work.checked
+        try:
+            analysis = await asyncio.shield(future)
+        except asyncio.CancelledError:
+            if future.cancelled():
+                raise Outdated from None
+            raise
+        return work.document, analysis
+
+    async def _run(self, work: Work) -> None:
+        document = work.document
+        await asyncio.sleep(LONG_PAUSE if len(document.text.lines) > LARGE else PAUSE)
+        if not work.wanted:
+            return
+        loop = asyncio.get_running_loop()
+        begun = time.perf_counter()
+        source, settings = document.source(), self._settings(document)
+        try:
+            analysis = await loop.run_in_executor(
+                self._pool, analyse, source, work.version, settings, work.is_wanted
+            )
+            if not work.wanted:
+                return
+            document.analysis = analysis
+            document.shown = analysis.report.ordered()
+            self._publish(document, True)
+            self._done(document, time.perf_counter() - begun)
+            work.checked.set_result(analysis)
+            times: Times | None = await loop.run_in_executor(self._pool, timed, analysis, work.is_wanted)
+            analysis.times = times
+            if work.wanted:
+                work.timed.set_result(analysis)
+        except Cancelled:
+            return
+        except Exception:
+            _log.exception("the analysis of %s failed", document.uri)
+            self._say(f"nccompile: the analysis of {document.name} failed; please report it")
+            work.drop()
+
+    def _settings(self, document: Document) -> Settings:
+        """The settings that hold for a document; the defaults, with a message, if they cannot be read."""
+        try:
+            config = Config() if document.path is None else config_for(document.path)
+            machine = default_machine() if config.machine is None else load(config.machine)
+        except NccompileError as error:
+            if str(error) not in self._said:
+                self._said.add(str(error))
+                self._say(str(error))
+            return Settings(Config(), default_machine())
+        return Settings(config, machine)

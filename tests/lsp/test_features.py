@@ -1,0 +1,241 @@
+"""Every feature over the real protocol: one server, one program, an editor that is a script."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from nccompile.diagnostics import render
+from nccompile.lint.config import Config
+from nccompile.lint.engine import lint
+from nccompile.source import Source
+from tests.lint.programs import OPTIONS
+from tests.lsp.client import Client, Failed, serving, span, uri_of
+
+PART = """\
+% part (x)
+(rough)
+N10 G0 X10
+N15 g1 X12 F20
+N20 G36 O$n$ D2
+(fine)
+N30 G91
+N40 G1 X1 F20
+N45 G3 X2 Y0 I1 J0
+N50 G37 O$n$ D-1
+N60 G20 L40 K$n$
+N65 G41 D1
+N70 G1 X5
+N75 M8
+N80 G40
+"""
+URI = "untitled:part.nc"
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Client]:
+    with serving() as client:
+        client.open(URI, PART)
+        client.checked(URI)
+        yield client
+
+
+def test_findings_are_those_of_lint_byte_for_byte(client: Client) -> None:
+    source = Source(URI, PART)
+    expected = [render(found, source) for found in lint(source, OPTIONS, Config()).ordered()]
+    shown = client.checked(URI)
+    assert [found["data"]["rendered"] for found in shown] == expected
+    small = next(found for found in shown if found["code"] == "NC054")
+    assert small["range"] == span(3, 4, 6)
+    assert small["message"] == "word letters in lower case\nhelp: write them in upper case"
+    assert (small["severity"], small["source"]) == (3, "nccompile")
+
+
+def test_hover_explains_words_and_shows_what_is_in_force(client: Client) -> None:
+    text = client.at("textDocument/hover", URI, 7, 5)["contents"]["value"]
+    assert "**G1**: line" in text
+    assert "`G1 G91 G99 F20`" in text
+    assert "`X13 Y0 Z0`" in text
+    assert "in proportion" not in text
+    assert "**F**: path velocity" in client.at("textDocument/hover", URI, 3, 12)["contents"]["value"]
+    assert "jump to block L" in client.at("textDocument/hover", URI, 10, 5)["contents"]["value"]
+    assert "waits for the acknowledge" in client.at("textDocument/hover", URI, 13, 5)["contents"]["value"]
+    assert "`G3 G91 G41 G99" not in text
+    assert "G41" in client.at("textDocument/hover", URI, 12, 5)["contents"]["value"]
+    assert "NC054: " in client.at("textDocument/hover", URI, 3, 5)["contents"]["value"]
+    assert client.at("textDocument/hover", URI, 0, 2) is None
+    assert client.at("textDocument/hover", URI, 99, 0) is None
+
+
+def labels(found: Any) -> list[str]:
+    return [item["label"] for item in found]
+
+
+def test_completion(client: Client) -> None:
+    uri = "untitled:completion"
+    client.open(uri, "% a\nN10 G36 O$depth$ D1\nN20 G\nN30 G20 L\nN40 X$d\nN50 \n(G\nN60 L")
+    instructions = client.at("textDocument/completion", uri, 2, 5)
+    assert {"G0", "G41", "G92"} <= set(labels(instructions))
+    assert instructions[0]["textEdit"]["range"] == span(2, 4, 5)
+    assert labels(client.at("textDocument/completion", uri, 3, 9)) == ["20", "40", "10", "50", "60"]
+    assert labels(client.at("textDocument/completion", uri, 4, 7)) == ["$depth$"]
+    assert {"X", "F", "M"} <= set(labels(client.at("textDocument/completion", uri, 5, 4)))
+    assert client.at("textDocument/completion", uri, 6, 2) == []
+    assert client.at("textDocument/completion", uri, 7, 5) == []
+    client.close(uri)
+
+
+def lines(found: Any) -> list[int]:
+    return [place["range"]["start"]["line"] for place in found]
+
+
+def test_definition_and_references(client: Client) -> None:
+    assert lines(client.at("textDocument/definition", URI, 10, 9)) == [7]
+    assert lines(client.at("textDocument/definition", URI, 10, 14)) == [4, 9]
+    assert client.at("textDocument/definition", URI, 7, 5) == []
+    everywhere, uses = {"includeDeclaration": True}, {"includeDeclaration": False}
+    assert lines(client.at("textDocument/references", URI, 7, 1, context=everywhere)) == [7, 10]
+    assert lines(client.at("textDocument/references", URI, 7, 1, context=uses)) == [10]
+    assert lines(client.at("textDocument/references", URI, 4, 10, context=everywhere)) == [4, 9, 10]
+    assert lines(client.at("textDocument/references", URI, 4, 10, context=uses)) == [10]
+
+
+def test_rename(client: Client) -> None:
+    assert client.at("textDocument/prepareRename", URI, 10, 9) == span(10, 9, 11)
+    assert client.at("textDocument/prepareRename", URI, 7, 5) is None
+    edits = client.at("textDocument/rename", URI, 7, 1, newName="N44")["changes"][URI]
+    assert [(e["range"], e["newText"]) for e in edits] == [(span(7, 1, 3), "44"), (span(10, 9, 11), "44")]
+    edits = client.at("textDocument/rename", URI, 4, 10, newName="count")["changes"][URI]
+    assert [(e["range"], e["newText"]) for e in edits] == [
+        (span(4, 10, 11), "count"), (span(9, 10, 11), "count"), (span(10, 14, 15), "count"),
+    ]  # fmt: skip
+    for place, name in (((7, 1), "N45"), ((7, 1), "abc"), ((4, 10), "5x"), ((7, 5), "N1")):
+        with pytest.raises(Failed):
+            client.at("textDocument/rename", URI, *place, newName=name)
+
+
+def test_symbols_and_folding(client: Client) -> None:
+    found = client.of("textDocument/documentSymbol", URI)
+    assert [(s["name"], s["range"]["end"]["line"], labels_of(s["children"])) for s in found] == [
+        ("rough", 4, []), ("fine", 14, ["loop N40", "G41"]),
+    ]  # fmt: skip
+    assert labels_of(found[1]["children"][1]["children"]) == ["M8"]
+    folded = {(f["startLine"], f["endLine"]) for f in client.of("textDocument/foldingRange", URI)}
+    assert folded == {(1, 4), (5, 14), (7, 10), (11, 14)}
+
+
+def labels_of(found: Any) -> list[str]:
+    return [symbol["name"] for symbol in found]
+
+
+def test_formatting(client: Client) -> None:
+    options = {"tabSize": 1, "insertSpaces": True}
+    (edit,) = client.of("textDocument/formatting", URI, options=options)
+    assert edit["newText"] == PART.replace("g1", "G1")
+    (edit,) = client.of("textDocument/rangeFormatting", URI, range=span(2, 0, 0, 4), options=options)
+    assert (edit["range"], edit["newText"]) == (span(3, 0, 14), "N15 G1 X12 F20")
+    assert client.of("textDocument/rangeFormatting", URI, range=span(5, 0, 9), options=options) == []
+
+
+def test_code_actions(client: Client) -> None:
+    context: dict[str, Any] = {"diagnostics": []}
+    found = {
+        a["title"]: a for a in client.of("textDocument/codeAction", URI, range=span(3, 5, 5), context=context)
+    }
+    assert list(found) == [
+        "Write the letters in upper case", "Silence NC054 here", "Apply all safe fixes", "Number the blocks anew",
+    ]  # fmt: skip
+    (edit,) = found["Write the letters in upper case"]["edit"]["changes"][URI]
+    assert (edit["range"], edit["newText"]) == (span(3, 4, 5), "G")
+    (edit,) = found["Silence NC054 here"]["edit"]["changes"][URI]
+    assert (edit["range"], edit["newText"]) == (span(3, 14, 14), " (nc: ignore[NC054])")
+    fixed = client.request("codeAction/resolve", found["Apply all safe fixes"])["edit"]["changes"][URI]
+    assert fixed[0]["newText"] == PART.replace("g1", "G1")
+    numbered = client.request("codeAction/resolve", found["Number the blocks anew"])["edit"]["changes"][URI]
+    assert "N80 G20 L50 K$n$\n" in numbered[0]["newText"]
+    only = {"diagnostics": [], "only": ["source.fixAll"]}
+    chosen = client.of("textDocument/codeAction", URI, range=span(0, 0, 0), context=only)
+    assert [action["kind"] for action in chosen] == ["source.fixAll.nccompile"]
+
+
+def test_hints_and_lenses(client: Client) -> None:
+    hints = client.of("textDocument/inlayHint", URI, range=span(0, 0, 0, 20))
+    shown = {hint["position"]["line"]: hint["label"] for hint in hints}
+    assert shown[7].startswith("→ X13  0.")
+    assert shown[8].startswith("→ X15 Y0  R1  0.")
+    assert shown[2] == "0.7 s"  # 10 mm from rest to rest: 20 mm/s, 100 mm/s2
+    lenses = client.of("textDocument/codeLens", URI)
+    assert [lens["range"]["start"]["line"] for lens in lenses] == [0, 1, 5]
+    assert lenses[1]["command"]["title"].startswith("2 segments · 12 mm · 0.9")
+
+
+def test_semantic_tokens(client: Client) -> None:
+    legend = client.capabilities["semanticTokensProvider"]["legend"]["tokenTypes"]
+    data = client.of("textDocument/semanticTokens/full", URI)["data"]
+    rows = [data[at : at + 5] for at in range(0, len(data), 5)]
+    line = start = 0
+    named = []
+    for delta_line, delta_start, length, kind, _ in rows:
+        line, start = line + delta_line, delta_start + (0 if delta_line else start)
+        named.append((PART.split("\n")[line][start : start + length], legend[kind]))
+    assert named[:4] == [
+        ("% part (x)", "namespace"),
+        ("(rough)", "comment"),
+        ("N10", "label"),
+        ("G0", "keyword"),
+    ]
+    assert ("$n$", "variable") in named
+    assert ("M8", "function") in named
+    some = client.of("textDocument/semanticTokens/range", URI, range=span(3, 0, 3))["data"]
+    assert some == [3, 0, 3, legend.index("label"), 0, 0, 4, 2, legend.index("keyword"), 0,
+                    0, 3, 3, legend.index("property"), 0, 0, 4, 3, legend.index("parameter"), 0]  # fmt: skip
+
+
+def test_positions_count_what_the_client_asks_for(client: Client) -> None:
+    uri = "untitled:wide"
+    text = "% a\nN10 (\U0001f600) g1 X1 F20\n"
+    client.open(uri, text)
+    small = next(found for found in client.checked(uri) if found["code"] == "NC054")
+    assert small["range"]["start"]["character"] == 9  # UTF-16: the picture is two
+    client.close(uri)
+    with serving(["utf-32", "utf-16"]) as other:
+        other.open(uri, text)
+        small = next(found for found in other.checked(uri) if found["code"] == "NC054")
+        assert small["range"]["start"]["character"] == 8
+
+
+def test_settings_and_machines_of_two_workspaces(client: Client, tmp_path: Path) -> None:
+    text = "% a\nN10 G0 X500\n"
+    for name, settings in (
+        ("one", '[lint]\nselect = ["NC4"]\n'),
+        ("two", 'machine = "small.toml"\n'),
+        ("bad", "[lnit]\n"),
+    ):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "nccompile.toml").write_text(settings)
+    axis = "velocity = 100\nacceleration = 500\nvelocity_step = 1\nmin = 0\nmax = 100\n"
+    axes = "".join(f"[axes.{letter}]\n{axis}" for letter in "XYZ")
+    (tmp_path / "two" / "small.toml").write_text(f'[machine]\nname = "small"\ncycle_us = 1000\n{axes}')
+    uris = {name: uri_of(tmp_path / name / "a.nc") for name in ("one", "two", "bad")}
+    for uri in uris.values():
+        client.open(uri, text)
+    assert [d["code"] for d in client.checked(uris["one"])] == []
+    assert [d["code"] for d in client.checked(uris["two"])] == ["NC402"]
+    assert [d["code"] for d in client.checked(uris["bad"])] == []
+    said = [m["params"]["message"] for m in client.notifications if m["method"] == "window/showMessage"]
+    assert any("unknown key lnit; did you mean lint?" in message for message in said)
+    (tmp_path / "two" / "nccompile.toml").write_text("")
+    client.notify("workspace/didChangeWatchedFiles", {"changes": []})
+    client.wait(lambda: True if not client.published(uris["two"]) else None)
+    for uri in uris.values():
+        client.close(uri)
+
+
+def test_requests_for_what_is_not_open_are_refused(client: Client) -> None:
+    for method in ("textDocument/hover", "textDocument/definition"):
+        with pytest.raises(Failed) as refused:
+            client.at(method, "untitled:none", 0, 0)
+        assert refused.value.code == -32602
