@@ -20,6 +20,7 @@ def make_server() -> NcServer:
     _reading(server)
     _navigating(server)
     _changing(server)
+    _acting(server)
     return server
 
 
@@ -149,6 +150,9 @@ def _changing(server: NcServer) -> None:
         last = asked.end.line - (asked.end.character == 0 and asked.end.line > asked.start.line)
         return actions.formatted_lines(document, asked.start.line, last)
 
+
+def _acting(server: NcServer) -> None:
+    """Code actions."""
     kinds = ["quickfix", actions.FIX_ALL, actions.RENUMBER]
 
     @server.feature(
