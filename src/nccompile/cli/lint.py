@@ -67,9 +67,10 @@ def lint_programs(
     from nccompile.lint.rewrite import encoding_of
     from nccompile.source import Source
 
-    gc.disable()  # millions of words without cycles: looking for some takes a third of the time
     settings = ProgramOptions(start, define, skip_blocks, max_jumps)
     reports = []
+    collecting = gc.isenabled()
+    gc.disable()  # millions of words without cycles: looking for some takes a third of the time
     for path in programs_in(files):
         config = (Config() if path == STDIN else config_for(path)).with_codes(_codes(select), _codes(ignore))
         options = settings.resolve(machine_of(machine if machine is not None else config.machine))
@@ -83,6 +84,8 @@ def lint_programs(
             reports.append(fixed.report)
         else:
             reports.append(lint(source, options, config, limit=limit))
+    if collecting:
+        gc.enable()
     to_stderr = fix and STDIN in files
     out = sys.stderr if to_stderr else sys.stdout
     out.write(_statistics(reports) if statistics else FORMATS[form](reports))
