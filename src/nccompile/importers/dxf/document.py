@@ -8,6 +8,7 @@ so the memory needed is that of the blocks and of the pieces.
 from __future__ import annotations
 
 import io
+import logging
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +21,9 @@ __all__ = ["LARGE", "Document", "open_document"]
 
 LARGE = 24_000_000
 """Size [bytes] of a text file from which its entities are streamed."""
+
+HEAD = 65536
+"""Bytes at the start of a file in which a drawing names its first section."""
 
 BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
 
@@ -41,19 +45,15 @@ def open_document(path: Path, found: Diagnostics) -> Document | None:
     try:
         size = path.stat().st_size
         with path.open("rb") as file:
-            head = file.read(64)
+            head = file.read(HEAD)
     except OSError as error:
         return _refuse(found, path, f"the file cannot be read: {error.strerror or error}")
-    if size == 0:
-        return _refuse(found, path, "the file is empty")
-    if head[:4] == b"AC10":
-        return _refuse(
-            found, path, "this is a DWG drawing, not a DXF drawing", "save it as DXF in the CAD program"
-        )
+    if why := _no_drawing(head):
+        return _refuse(found, path, *why)
+    logging.getLogger("ezdxf").addHandler(logging.NullHandler())
     try:
-        if size >= LARGE and not head.startswith(BINARY):
-            return _stream(path, found)
-        return _load(path, found)
+        large = size >= LARGE and not head.startswith(BINARY)
+        return _stream(path, found) if large else _load(path, found)
     except (
         DXFError,
         OSError,
@@ -69,6 +69,17 @@ def open_document(path: Path, found: Diagnostics) -> Document | None:
         return _refuse(found, path, f"this is no DXF drawing that can be read: {_one_line(error)}", hint)
 
 
+def _no_drawing(head: bytes) -> tuple[str, ...]:
+    """Message and hint if a file that begins like this is no DXF drawing."""
+    if not head:
+        return ("the file is empty",)
+    if head[:4] == b"AC10":
+        return ("this is a DWG drawing, not a DXF drawing", "save it as DXF in the CAD program")
+    if b"SECTION" not in head and not head.startswith(BINARY):
+        return ("this is not a DXF drawing",)
+    return ()
+
+
 def _refuse(found: Diagnostics, path: Path, message: str, hint: str = "") -> Document | None:
     """Reports why there is no drawing."""
     found.add(Diagnostic("NC601", Severity.ERROR, message, NOWHERE, str(path), hint))
@@ -81,15 +92,41 @@ def _one_line(error: BaseException) -> str:
 
 
 def _load(path: Path, found: Diagnostics) -> Document:
-    from ezdxf import recover  # noqa: PLC0415
     from ezdxf.filemanagement import readfile  # noqa: PLC0415
 
     try:
         doc: Any = readfile(str(path))
     except Exception as error:
-        doc, auditor = recover.readfile(str(path))
+        doc, auditor = _recover(path)
         _report_repairs(found, path, error, [entry.message for entry in (*auditor.fixes, *auditor.errors)])
     return Document(doc, lambda: iter(doc.modelspace()), doc.acad_release, _units(doc))
+
+
+def _recover(path: Path) -> tuple[Any, Any]:
+    """The drawing and its auditor by recover mode; where lines are missing or added by the mode that finds the
+    next sound tag.
+    """
+    from ezdxf import recover  # noqa: PLC0415
+    from ezdxf.lldxf.const import DXFError  # noqa: PLC0415
+
+    whole = _completed(path)
+    try:
+        return recover.readfile(str(path)) if whole is None else recover.read(io.BytesIO(whole))
+    except (DXFError, ValueError):
+        return recover.explore(str(path))
+
+
+def _completed(path: Path) -> bytes | None:
+    """The bytes of a text file that was cut off, with its last section closed; None if it has its end.
+
+    Recover mode leaves out a section that has no end, which in a cut-off file is that of the entities.
+    """
+    data = path.read_bytes()
+    if data.startswith(BINARY) or data.rstrip().endswith(b"EOF"):
+        return None
+    lines = data.splitlines()
+    begin = max((at for at in range(0, len(lines), 2) if lines[at].strip() == b"0"), default=0)
+    return b"\n".join([*lines[:begin], b"0", b"ENDSEC", b"0", b"EOF", b""])
 
 
 def _report_repairs(found: Diagnostics, path: Path, error: BaseException, repairs: list[str]) -> None:

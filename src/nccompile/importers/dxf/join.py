@@ -207,8 +207,6 @@ def meet(paths: Paths, gap: float) -> Paths:
     follower[paths.first[1:] - 1] = np.where(paths.closed, paths.first[:-1], -1)
     joint = follower >= 0
     i, j = np.flatnonzero(joint), follower[joint]
-    single = i == j
-    i, j = i[~single], j[~single]
     apart = np.abs(pieces.end[i] - pieces.start[j])
     i, j, apart = i[apart > 0], j[apart > 0], apart[apart > 0]
     start, end = pieces.start.copy(), pieces.end.copy()
@@ -217,7 +215,7 @@ def meet(paths: Paths, gap: float) -> Paths:
     stretch = lengths(pieces) / np.maximum(np.abs(pieces.end - pieces.start), 1e-300)
     stiff = (moved > 0) & ((moved * np.maximum(1.0, stretch) > max(2 * gap, 0.0) + COINCIDENT)
                            | (moved * 4.0 > np.abs(pieces.end - pieces.start)))  # fmt: skip
-    bridged = (stiff[i] | stiff[j]) & (apart > 0)
+    bridged = stiff[i] | stiff[j] | (i == j)
     end[i[bridged]], start[j[bridged]] = pieces.end[i[bridged]], pieces.start[j[bridged]]
     met = similar(pieces, start, end)
     lone = pieces.start == pieces.end

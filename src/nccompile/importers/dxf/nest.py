@@ -19,7 +19,8 @@ FINENESS = 0.02
 
 @dataclass(frozen=True)
 class Nesting:
-    """For each of n paths: parent i8 (n,), the smallest closed path around it, -1 if none; depth i8 (n,), how
+    """For each of n paths: parent i8 (n,), the path that must come after it, -1 if none: the smallest closed path
+    around it, or where contours cross one of those around what is in it; depth i8 (n,), how
     many are around it; area f8 (n,) [mm²], positive for counter-clockwise contours, 0 for open paths.
     """
 
@@ -76,9 +77,29 @@ def nest(paths: Paths) -> Nesting:
     held = votes >= 3
     inside, holder = inside[held], ring[outside[held]]
     np.add.at(depth, inside, 1)
-    order = np.lexsort((-size[holder], inside))
-    parent[inside[order]] = holder[order]  # of several the smallest is written last
-    return Nesting(parent, depth, area)
+    return Nesting(_followers(n, inside, holder, size), depth, area)
+
+
+def _followers(n: int, inside: Indices, holder: Indices, size: npt.NDArray[np.float64]) -> Indices:
+    """Shape (n,): one path that must come after each, such that all that are around it come after it.
+
+    That is the smallest one around it.  Where contours cross, what is inside two of them has two that need not
+    follow each other; then the larger one is made to follow the smaller.
+    """
+    parent = np.full(n, -1)
+    after: dict[int, set[int]] = {}
+    for i, j in zip(inside.tolist(), holder.tolist(), strict=True):
+        after.setdefault(i, set()).add(j)
+    ranked = np.lexsort((np.arange(n), size)).tolist()
+    rank = {i: place for place, i in enumerate(ranked)}
+    for i in ranked:
+        later = after.pop(i, None)
+        if later:
+            parent[i] = min(later, key=rank.__getitem__)
+            later.discard(int(parent[i]))
+            if later:
+                after.setdefault(int(parent[i]), set()).update(later)
+    return parent
 
 
 def _spread(line: Complexes) -> Complexes:

@@ -276,10 +276,11 @@ def _begin_rows(paths: Paths, start: StartPoint) -> Indices:
     """The piece that each path begins with by the rule; `nearest` begins at the lower left until the tour says."""
     pieces = paths.pieces
     owner = np.repeat(np.arange(len(paths)), np.diff(paths.first))
+    value: Floats
     if start.rule == "corner":
-        value: Floats = -np.round(_corners(paths), 7)
+        value = -np.round(_corners(paths), 7)
     elif start.rule == "given":
-        value = np.round(np.abs(pieces.start - start.at), 7)
+        value = np.asarray(np.round(np.abs(pieces.start - start.at), 7), np.float64)
     else:
         value = np.round(pieces.start.real + pieces.start.imag, 7)
     ranked = np.lexsort((pieces.start.real, value, owner))
@@ -292,7 +293,7 @@ def _corners(paths: Paths) -> npt.NDArray[np.float64]:
     enter, leave = end_tangents(paths.pieces)
     before = np.arange(len(enter)) - 1
     before[paths.first[:-1]] = paths.first[1:] - 1
-    return np.abs(np.angle(enter * leave[before].conj())).astype(np.float64)
+    return np.asarray(np.abs(np.angle(enter * leave[before].conj())), np.float64)
 
 
 def _from_longest(paths: Paths) -> Paths:

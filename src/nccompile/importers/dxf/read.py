@@ -132,6 +132,8 @@ def _unit(
     if options.ask_units is not None and len(shown):
         answer = options.ask_units(width, height)
         return answer, _scale(UNITS[answer])
+    if not len(shown):
+        return "mm", 1.0
     message = f"the drawing names no unit; its {width:.5g} by {height:.5g} units are taken as mm"
     hint = "say what it was drawn in: --units mm or --units inch"
     found.add(Diagnostic("NC603", Severity.WARNING, message, NOWHERE, str(path), hint))
