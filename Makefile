@@ -33,6 +33,7 @@ bench: $(VENV)/.installed-dev
 
 docs: $(VENV)/.installed-dev
 	$(BIN)/python -m tools.rule_pages
+	$(BIN)/python -m tools.textmate
 
 accept: $(VENV)/.installed-dev
 	NCCOMPILE_ACCEPT=1 $(BIN)/python -m pytest tests/golden

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Format", "lint_programs", "programs_in", "read_bytes", "store"]
 
-SUFFIXES = {".nc", ".cnc", ".din", ".iso", ".mpf"}
+SUFFIXES = {".nc", ".cnc", ".din", ".iso"}
 """Files that are taken from folders."""
 
 
