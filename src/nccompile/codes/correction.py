@@ -15,4 +15,17 @@ PAGES: tuple[Page, ...] = (
         "% a\nN10 G41 D3\nN20 G1 X10 F20\nN30 G40",
         "% a\nN20 G1 X10 Y3 F20",
     ),
+    Page(
+        "NC302",
+        "gouge",
+        "The path of the tool's centre comes nearer to the contour than the tool's radius, so the tool would cut into "
+        "it: a narrow slot, a concave arc or a step smaller than the tool. The message has the deepest place of the "
+        "block and the depth. With G61 on, loop avoidance cuts such places out of the path, and the finding is a "
+        "warning (SoftMotion §6.2.3, 6.2.4).",
+    ),
+    Page(
+        "NC303",
+        "correction in another plane",
+        "Tool radius correction acts in X-Y. A curve in Z-X, Y-Z or in space has no offset there.",
+    ),
 )

@@ -33,6 +33,7 @@ from nccompile.passes.reverse import Reverse
 from nccompile.passes.round_corners import RoundCorners
 from nccompile.passes.smooth_corners import SmoothCorners
 from nccompile.passes.split import Split
+from nccompile.passes.tool_radius import ToolRadius
 from nccompile.passes.transform import Transform
 from nccompile.toolpath.columns import Toolpath
 
@@ -44,6 +45,7 @@ ORDER: tuple[type[Pass], ...] = (
     MoveStart,
     Split,
     Compress,
+    ToolRadius,
     AvoidLoops,
     RoundCorners,
     SmoothCorners,
