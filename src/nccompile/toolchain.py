@@ -21,7 +21,7 @@ from nccompile.diagnostics import Diagnostics
 from nccompile.machine.limits import check_axes, check_travel
 from nccompile.machine.model import Machine
 from nccompile.passes.check_marks import check_marks
-from nccompile.passes.velocity import LOOK_AHEAD, WINDOW, PlanSettings, plan, row_times
+from nccompile.passes.velocity import LOOK_AHEAD, TIME_OPTIMAL, WINDOW, PlanSettings, plan, row_times
 from nccompile.source import LargeSource, Source
 from nccompile.threads import ahead
 from nccompile.toolpath import Toolpath
@@ -79,6 +79,8 @@ class Compilation:
     @property
     def time_law(self) -> str:
         """The velocity profile that is planned."""
+        if self.options.planner == TIME_OPTIMAL:
+            return "trapezoid"  # it uses all of the acceleration: a sigmoid would exceed it
         return self.options.time_law or self.options.machine.path.time_law
 
     @property

@@ -47,6 +47,7 @@ class PlannerName(StrEnum):
     SOFTMOTION = "softmotion"
     LOOK_AHEAD = "look-ahead"
     JERK = "jerk"
+    TIME_OPTIMAL = "time-optimal"
 
 
 class Report(StrEnum):

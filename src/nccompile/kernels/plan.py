@@ -35,12 +35,13 @@ _TANGENTIAL = 0.6  # on curves: share of an axis's acceleration for changing the
 def row_limits(
     kind: Kinds, start: Floats, target: Floats, curve: Ints, plane: Kinds, parameters: Floats, length: Floats,
     profile: npt.NDArray[np.uint16], v_axis: Floats, a_axis: Floats, rapid: Floats, peak: float,
-    feed: Floats, accel: Floats, decel: Floats, v_limit: Floats, t_start: Floats, t_end: Floats,
+    straight: Kinds, feed: Floats, accel: Floats, decel: Floats, v_limit: Floats, t_start: Floats, t_end: Floats,
 ) -> None:  # fmt: skip
     """Per row: the slopes q' at both ends, and what the axes allow.
 
     start, target, t_start, t_end: Shape (n, k); v_axis, a_axis, rapid: Shape (k,), inf if not limited (rapid:
-    if the machine leaves G0 to the program's F); peak: greatest over mean acceleration of the time law.
+    if the machine leaves G0 to the program's F); straight u1 (n,): 1 where a curve's own limits are left out;
+    peak: greatest over mean acceleration of the time law.
     Changes feed (of positionings), accel, decel; writes v_limit, t_start, t_end.
 
     On a curve of curvature c, the tangential share at and the normal share an of an axis's limit a hold
@@ -120,7 +121,7 @@ def row_limits(
                         slopes[i, 2] = dz / size
                 a_plane = min(float(a_axis[0]), float(a_axis[1]), float(a_axis[2]))
                 v_plane = min(float(v_axis[0]), float(v_axis[1]), float(v_axis[2]))
-            if share > 0.0:
+            if share > 0.0 and straight[i] == 0:
                 v_top = min(v_top, v_plane / share)
                 a_top = min(a_top, _TANGENTIAL * a_plane / (share * peak))
                 bend = share * share * max_curvature(int(kind[i]), p)

@@ -11,11 +11,12 @@ from nccompile.passes.velocity.settings import (
     LOOK_AHEAD,
     PLANNERS,
     SOFTMOTION,
+    TIME_OPTIMAL,
     WINDOW,
     PlanSettings,
 )
 
 __all__ = [
-    "JERK", "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "WINDOW", "PlanSettings", "Planner", "plan",
-    "row_times",
+    "JERK", "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "TIME_OPTIMAL", "WINDOW", "PlanSettings",
+    "Planner", "plan", "row_times",
 ]  # fmt: skip

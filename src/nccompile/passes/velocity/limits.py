@@ -9,13 +9,16 @@ import numpy as np
 from nccompile.kernels import plan as kernels
 from nccompile.kernels.corners import junctions
 from nccompile.kernels.timelaw import peak_factor
-from nccompile.passes.velocity.settings import JERK, PlanSettings
+from nccompile.passes.velocity.settings import JERK, TIME_OPTIMAL, PlanSettings
 from nccompile.toolpath.columns import Toolpath
 
 __all__ = ["limited"]
 
 _UNLIMITED = 1e6
 """v_limit of segments that nothing but their feed limits [mm/s]: the greatest velocity a machine may have."""
+
+_UNBOUND = 1e9
+"""Path acceleration that only the axes limit [mm/s²]: the greatest one a machine may have."""
 
 
 def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
@@ -31,10 +34,14 @@ def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
     v_limit, v_junction = np.empty(n), np.empty(n)
     t_start, t_end = np.empty_like(chunk.target), np.empty_like(chunk.target)
     axis = settings.planned_limits
+    straight = np.zeros(n, np.uint8)
+    if settings.planner == TIME_OPTIMAL:
+        straight[(chunk.profile & 0x7FFF) == 0] = 1
+        accel[:] = decel[:] = _UNBOUND
     kernels.row_limits(
         chunk.kind, chunk.starts(), chunk.target, chunk.curve, chunk.curves.plane, chunk.curves.parameters,
         chunk.length, chunk.profile, axis.velocity, axis.acceleration, axis.rapid, peak_factor(settings.law),
-        feed, accel, decel, v_limit, t_start, t_end,
+        straight, feed, accel, decel, v_limit, t_start, t_end,
     )  # fmt: skip
     if settings.planner == JERK and axis.jerk is not None:
         kernels.jerk_limits(

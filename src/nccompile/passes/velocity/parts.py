@@ -10,6 +10,7 @@ from nccompile.kernels.curves import NODES
 from nccompile.kernels.erosion import cut_rows
 from nccompile.kernels.interpolator import CONTINUES
 from nccompile.toolpath.columns import CURVE_PARAMETERS, Curves, EventKind, Events, Floats, Ints, Toolpath
+from nccompile.toolpath.lengths import path_lengths
 
 __all__ = ["Parts", "parted"]
 
@@ -46,7 +47,7 @@ def parted(path: Toolpath, parts: Parts) -> Toolpath:
     curve = np.full(m, -1, np.int32)
     curve[curved] = np.arange(len(curved), dtype=np.int32)
     inner = np.append(row[1:] == row[:-1], False)
-    return path.replace(
+    out = path.replace(
         **{name: getattr(path, name)[row] for name in _TAKEN if name not in ("mark", "profile")},
         target=target, curve=curve, length=length,
         curves=Curves(path.curves.plane[path.curve[row[curved]]], parameters[curved]),
@@ -56,6 +57,9 @@ def parted(path: Toolpath, parts: Parts) -> Toolpath:
         mark=np.where(inner, 0, path.mark[row]).astype(np.uint16),
         v_end=np.zeros(m),
     )  # fmt: skip
+    return out.replace(
+        length=np.where(path.length[row] > 0.0, path_lengths(out.replace(profile=out.profile & 0x7FFF)), 0.0)
+    )
 
 
 def _events(path: Toolpath, parts: Parts) -> Events:

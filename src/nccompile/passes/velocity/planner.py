@@ -30,7 +30,8 @@ import numpy as np
 
 from nccompile.kernels import plan as kernels
 from nccompile.passes.velocity.limits import limited
-from nccompile.passes.velocity.settings import JERK, PlanSettings
+from nccompile.passes.velocity.optimal import fastest
+from nccompile.passes.velocity.settings import JERK, TIME_OPTIMAL, PlanSettings
 from nccompile.passes.velocity.smooth import smoothable
 from nccompile.toolpath.columns import EventKind, Floats, Kind, Toolpath
 
@@ -39,6 +40,9 @@ __all__ = ["Planner", "plan", "row_times"]
 
 def plan(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpath]:
     """Plans the velocities of a path; the chunks that come out are cut where rows settle."""
+    if settings.planner == TIME_OPTIMAL:
+        yield from fastest(chunks, settings)
+        return
     planner = Planner(settings)
     for chunk in smoothable(chunks, settings) if settings.planner == JERK else chunks:
         yield from planner.feed(chunk)

@@ -14,13 +14,14 @@ from nccompile.machine.limits import AxisLimits, limits
 from nccompile.machine.model import Machine
 from nccompile.units import seconds_from_us
 
-__all__ = ["JERK", "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "WINDOW", "PlanSettings"]
+__all__ = ["JERK", "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "TIME_OPTIMAL", "WINDOW", "PlanSettings"]
 
 SOFTMOTION = "softmotion"
 LOOK_AHEAD = "look-ahead"
 JERK = "jerk"
+TIME_OPTIMAL = "time-optimal"
 
-PLANNERS = (SOFTMOTION, LOOK_AHEAD, JERK)
+PLANNERS = (SOFTMOTION, LOOK_AHEAD, JERK, TIME_OPTIMAL)
 """Planners by the name that command line and machine file use."""
 
 WINDOW = 30_000
@@ -103,7 +104,7 @@ class PlanSettings:
             decel=path.deceleration,
             angle_tolerance=radians(angle_deg),
             cycle=seconds_from_us(machine.cycle_us),
-            law=LAWS[time_law or path.time_law],
+            law=TRAPEZOID if planner == TIME_OPTIMAL else LAWS[time_law or path.time_law],
             planner=planner or LOOK_AHEAD,
             window=window,
             junction_deviation=junction_deviation,
