@@ -18,7 +18,7 @@ import hashlib
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar
 
@@ -39,13 +39,31 @@ class Kernel(Generic[P, R]):
     def __init__(self, function: Callable[P, R]) -> None:
         self.py_func = function
         self._dispatcher: Any = None
+        self._native: Sequence[Any] | None = None
+        self._compilations = 0
         functools.update_wrapper(self, function)
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
         """Runs the function the way the switch says."""
-        if _state["compiled"]:
-            return self.dispatcher(*args, **kwargs)  # type: ignore[no-any-return]
-        return self.py_func(*args, **kwargs)
+        if not _state["compiled"]:
+            return self.py_func(*args, **kwargs)
+        if self._native is None:
+            self._native = _native_forms(self._name)
+        for form in self._native:
+            if not kwargs and form.takes(args):
+                ended_well, result = form(args)
+                if ended_well:
+                    return result  # type: ignore[no-any-return]
+                break  # numba's own call raises what was wrong
+        result = self.dispatcher(*args, **kwargs)
+        if len(self.dispatcher.overloads) > self._compilations:
+            self._compilations = len(self.dispatcher.overloads)
+            _keep(self._name, self.dispatcher.overloads)
+        return result  # type: ignore[no-any-return]
+
+    @property
+    def _name(self) -> str:
+        return f"{self.py_func.__module__}.{self.py_func.__qualname__}"
 
     @property
     def dispatcher(self) -> Any:
@@ -89,21 +107,41 @@ def on_first_compilation(tell: Callable[[], None]) -> None:
 
 
 @functools.cache
-def _numba() -> Any:
-    """Imports numba with a cache folder of our own.
+def _folder() -> Path:
+    """The cache folder of these kernels.
 
     numba's cache looks only at the file of the kernel itself, so a changed callee would leave stale machine
     code; a folder named after the content of all kernels cannot be stale.
     """
     sources = b"".join(p.read_bytes() for p in sorted(Path(__file__).parent.glob("*.py")))
     digest = hashlib.sha256(sources + sys.version.encode()).hexdigest()[:16]
-    folder = _cache_base() / "nccompile" / digest
+    return _cache_base() / "nccompile" / digest
+
+
+@functools.cache
+def _numba() -> Any:
+    """Imports numba with a cache folder of our own."""
+    folder = _folder()
     if not folder.exists() and _state["tell"] is not None:
         _state["tell"]()
     os.environ.setdefault("NUMBA_CACHE_DIR", str(folder))
     import numba  # noqa: PLC0415
 
     return numba
+
+
+def _native_forms(name: str) -> Sequence[Any]:
+    if not _folder().exists():
+        return ()
+    from nccompile.kernels import native  # noqa: PLC0415 - llvmlite takes its time, and Python kernels need none
+
+    return native.load(_folder(), name)
+
+
+def _keep(name: str, overloads: Mapping[Any, Any]) -> None:
+    from nccompile.kernels import native  # noqa: PLC0415
+
+    native.save(_folder(), name, list(overloads.values()))
 
 
 def _cache_base() -> Path:
