@@ -21,7 +21,17 @@ from nccompile.diagnostics import Diagnostics
 from nccompile.machine.limits import check_axes, check_travel
 from nccompile.machine.model import Machine
 from nccompile.passes.check_marks import check_marks
-from nccompile.passes.velocity import LOOK_AHEAD, TIME_OPTIMAL, WINDOW, PlanSettings, plan, row_times
+from nccompile.passes.velocity import (
+    LOOK_AHEAD,
+    SOFTMOTION,
+    TIME_OPTIMAL,
+    WINDOW,
+    PlanSettings,
+    plan,
+    row_times,
+)
+from nccompile.passes.velocity.excess import check_excess
+from nccompile.passes.velocity.losses import Losses
 from nccompile.source import LargeSource, Source
 from nccompile.threads import ahead
 from nccompile.toolpath import Toolpath
@@ -36,7 +46,8 @@ class Options:
 
     decoder: start position, variables, skipped blocks, jump limit;  angle_tolerance [deg] and time_law: those
     of the machine if None;  verify: check the invariants of the toolpath after every stage;  planner: one of
-    `PLANNERS`, window: rows it looks ahead, None for all, junction_deviation [mm] (`PlanSettings`).
+    `PLANNERS`, window: rows it looks ahead, None for all, junction_deviation [mm] (`PlanSettings`);  losses: gather
+    where the time goes.
     """
 
     machine: Machine
@@ -47,6 +58,7 @@ class Options:
     planner: str = LOOK_AHEAD
     window: int | None = WINDOW
     junction_deviation: float | None = None
+    losses: bool = False
 
 
 @dataclass
@@ -55,12 +67,15 @@ class JobTime:
 
     seconds: float = 0.0
     smoothing: float = 0.0
+    losses: Losses | None = None
     _velocity: float = 0.0
 
     def along(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
         """Hands chunks on and counts their time at override 1; M functions count as acknowledged at once."""
         for chunk in chunks:
             if len(chunk):
+                if self.losses is not None:
+                    self.losses.add(chunk, self._velocity)
                 assert chunk.v_end is not None
                 self.seconds += float(row_times(chunk, self._velocity, self.smoothing).sum())
                 self._velocity = float(chunk.v_end[-1])
@@ -106,8 +121,11 @@ class Compilation:
             junction_deviation=self.options.junction_deviation,
         )
         self.time.smoothing = settings.smoothing
-        chunks = self._checked(self._verified(program))
-        return self.time.along(self._verified(plan(chunks, settings)))
+        self.time.losses = Losses(settings) if self.options.losses else None
+        planned = plan(self._checked(self._verified(program)), settings)
+        if settings.planner == SOFTMOTION:
+            planned = check_excess(planned, settings, self.source, self.diagnostics)
+        return self.time.along(self._verified(planned))
 
     def write(self, path: Path) -> ncq.Meta | None:
         """Writes the OutQueue; no file is left, and None returned, if the program has errors."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -56,6 +57,7 @@ def compile_program(
 ) -> None:
     """Compile a part program to an OutQueue; a program with errors leaves no file."""
     from nccompile.cli.inputs import ProgramOptions, finish, machine_of, output_of, read_program
+    from nccompile.cli.progress import progress
     from nccompile.toolchain import Compilation
 
     source = read_program(program)
@@ -64,9 +66,10 @@ def compile_program(
         start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify,
         planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
     )  # fmt: skip
-    options = settings.resolve(machine_of(machine))
+    options = replace(settings.resolve(machine_of(machine)), losses=report is not None)
     compilation = Compilation(source, options)
-    meta = compilation.write(place)
+    with progress(source):
+        meta = compilation.write(place)
     if report is not None:
         _write_report(report, compilation, meta, place)
     finish(compilation, diagnostics)
@@ -93,6 +96,7 @@ def _write_report(path: Path, compilation: Compilation, meta: Meta | None, place
         "diagnostics": json.loads(to_json(compilation.diagnostics)),
         "counts": dict(sorted(compilation.diagnostics.counts.items())),
         "queue": None if meta is None else meta.as_dict(),
+        "velocity": None if compilation.time.losses is None else compilation.time.losses.as_dict(),
     }
     with replacing(path) as (file, commit):
         file.write((json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())

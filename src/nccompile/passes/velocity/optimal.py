@@ -132,7 +132,9 @@ def _grid(path: Toolpath) -> _Grid:
     )  # fmt: skip
     row, p0, p1 = row[:m], p0[:m], p1[:m]
     length = path.length[row] * (p1 - p0)
-    curved = ((path.curve[row] >= 0) & (solid[row] == 0) & (path.length[row] > kernels.SHORT)).astype(np.uint8)
+    curved = ((path.curve[row] >= 0) & (solid[row] == 0) & (path.length[row] > kernels.SHORT)).astype(
+        np.uint8
+    )
     return _Grid(Parts(row, p0, p1), d1[:m], d2[:m], length, curved)
 
 
