@@ -100,8 +100,8 @@ def paths(draw: st.DrawFn, *, stops: bool = True, most: int = 25) -> Toolpath:
         if kind in ("line", "rapid", "z", "rotary"):
             build.line(
                 draw(lengths) if kind != "rotary" else draw(st.sampled_from([0.0, 5.0])), draw(turns), f, a, d,
-                dz=draw(st.floats(-10, 10)) if kind == "z" else 0.0,
-                da=draw(st.floats(-90, 90)) if kind == "rotary" else 0.0,
+                dz=round(draw(st.floats(-10, 10)), 6) if kind == "z" else 0.0,
+                da=round(draw(st.floats(-90, 90)), 6) if kind == "rotary" else 0.0,
                 kind=Kind.POSITIONING if kind == "rapid" else Kind.LINE,
             )  # fmt: skip
             if draw(st.booleans()):
