@@ -12,7 +12,7 @@ import shutil
 import tempfile
 from bisect import bisect_right
 from codecs import BOM_UTF8, getincrementaldecoder
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -116,6 +116,8 @@ class LargeSource(Source):
     def __init__(self, name: str, file: BinaryIO, part: int = _PART) -> None:
         object.__setattr__(self, "name", name)
         self.part = part
+        self.on_read: Callable[[int], None] | None = None
+        """Told the place up to which the program was read, again and again, by whichever thread reads."""
         self._file = file
         self._lock = Lock()
         self._known = [1], [0]  # lines and their places, ascending

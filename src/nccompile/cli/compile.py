@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -66,7 +65,7 @@ def compile_program(
         start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify,
         planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
     )  # fmt: skip
-    options = replace(settings.resolve(machine_of(machine)), losses=report is not None)
+    options = settings.resolve(machine_of(machine))
     compilation = Compilation(source, options)
     with progress(source):
         meta = compilation.write(place)
@@ -96,7 +95,6 @@ def _write_report(path: Path, compilation: Compilation, meta: Meta | None, place
         "diagnostics": json.loads(to_json(compilation.diagnostics)),
         "counts": dict(sorted(compilation.diagnostics.counts.items())),
         "queue": None if meta is None else meta.as_dict(),
-        "velocity": None if compilation.time.losses is None else compilation.time.losses.as_dict(),
     }
     with replacing(path) as (file, commit):
         file.write((json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())

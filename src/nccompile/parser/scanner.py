@@ -128,6 +128,8 @@ def tables(source: LargeSource) -> Iterator[Table]:
                 table.block_line[noted].tolist(), (place + table.block_begin[noted].astype(np.int64)).tolist()
             )
             yield table
+            if source.on_read is not None:
+                source.on_read(table.end)
 
 
 def _whole_lines(source: LargeSource) -> Iterator[tuple[int, bytes]]:
