@@ -58,7 +58,7 @@ def machine_file(
         return Made(None, Result(), "", found)
     options = ConvertOptions(tolerance=TOLERANCE / 2, **converting)
     result = convert(drawing, job or Job(), options, found, "drawing.dxf")
-    return Made(drawing, result, text_of(result, 0), found)
+    return Made(drawing, result, text_of(result, 0) if result.programs else "", found)
 
 
 def text_of(result: Result, number: int) -> str:

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from nccompile.cli.inputs import ProgramOptions, finish, is_queue, machine_of, read_program, read_queue
+from nccompile.cli.inputs import ProgramOptions, finish, machine_of, read_program
 from nccompile.cli.options import Report
+from nccompile.cli.queues import is_queue, read_queue
 from nccompile.toolchain import Compilation
 from nccompile.toolpath import Toolpath
 

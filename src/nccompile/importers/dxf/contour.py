@@ -10,8 +10,7 @@ import numpy as np
 from nccompile.importers.dxf.assemble import Moves
 from nccompile.importers.dxf.job import Operation, Side
 from nccompile.importers.dxf.leads import FINE, Obstacles, Room, lead_in, lead_out
-from nccompile.importers.dxf.order import end_tangents
-from nccompile.importers.dxf.pieces import Pieces, flatten, lengths
+from nccompile.importers.dxf.pieces import Pieces, end_tangents, flatten, lengths
 from nccompile.importers.dxf.stretches import stretch, tab_stretches
 from nccompile.toolpath import Kind, Mark
 

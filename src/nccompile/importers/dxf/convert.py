@@ -92,6 +92,10 @@ def convert(drawing: Drawing, job: Job, options: ConvertOptions, found: Diagnost
             _machine(paths.select(rows), "_" + name, drawing, shop, options, result)
     else:
         _machine(paths, "", drawing, shop, options, result)
+    result.programs = [program for program in result.programs if program.moves.rows]
+    if not result.programs:
+        message = "the drawing has nothing to machine: nothing of it is left"
+        found.add(Diagnostic("NC604", Severity.ERROR, message, NOWHERE, file, "see the other findings"))
     return result
 
 

@@ -79,18 +79,19 @@ def _line_circle(pieces: Pieces, line: int, arc: int) -> list[complex]:
     gap = abs(centre - foot)
     if gap > radius + TOUCH:
         return []
-    half = sqrt(max(radius * radius - gap * gap, 0.0))
+    half = sqrt(max((radius - gap) * (radius + gap), 0.0))
     return [foot + half * unit, foot - half * unit]
 
 
 def _circles(pieces: Pieces, a: int, b: int) -> list[complex]:
+    a, b = (a, b) if pieces.p[a, 2] <= pieces.p[b, 2] else (b, a)  # from the smaller circle: keeps the digits
     p, q = (complex(pieces.p[k, 0], pieces.p[k, 1]) for k in (a, b))
     r, s = float(pieces.p[a, 2]), float(pieces.p[b, 2])
     d = abs(q - p)
     if d <= TOUCH or d > r + s + TOUCH or d < abs(r - s) - TOUCH:
         return []
-    along = (d * d + r * r - s * s) / (2 * d)
-    half = sqrt(max(r * r - along * along, 0.0))
+    along = ((d - s) * (d + s) + r * r) / (2 * d)
+    half = sqrt(max((r - along) * (r + along), 0.0))
     unit = (q - p) / d
     return [p + unit * complex(along, half), p + unit * complex(along, -half)]
 

@@ -18,13 +18,14 @@ from nccompile.importers.dxf.fit import arcs_for_cubics
 from nccompile.importers.dxf.grid import Indices, cluster
 from nccompile.importers.dxf.join import Paths, meet
 from nccompile.importers.dxf.leads import line_string
-from nccompile.importers.dxf.order import end_tangents, reversed_paths
+from nccompile.importers.dxf.order import reversed_paths
 from nccompile.importers.dxf.pieces import (
     PieceKind,
     Pieces,
     Row,
     arc_row,
     cubic_row,
+    end_tangents,
     flatten,
     lengths,
     line_row,
@@ -42,6 +43,9 @@ FINE = 1e-5
 
 MEET = 1e-3
 """[mm] Ends of parts that are one point: crossings are left a little late where the paths cross at a flat angle."""
+
+FLAT_RADIUS = 2e4
+"""Arcs of a larger radius [mm] are moved as lines: where they cross others has too few digits."""
 
 CORNER = 1e-4
 """Bend [rad] below which pieces go on smoothly."""
@@ -70,7 +74,8 @@ def _chains(parts: Pieces, closed: bool) -> Paths:
     node = cluster(np.concatenate([parts.start, parts.end]), MEET) if len(parts) else np.zeros(0, np.int64)
     tail, head = node[: len(parts)], node[len(parts) :]
     leaving: dict[int, list[int]] = {}
-    for i in np.flatnonzero((tail != head) | parts.is_full).tolist():
+    rows = np.flatnonzero((tail != head) | parts.is_full)
+    for i in (_without_dead_ends(rows, tail, head) if closed else rows).tolist():
         leaving.setdefault(int(tail[i]), []).append(i)
     entered = set(head.tolist())
     begins = sorted(range(len(parts)), key=lambda i: (int(tail[i]) in entered, i))
@@ -93,6 +98,15 @@ def _chains(parts: Pieces, closed: bool) -> Paths:
     )
 
 
+def _without_dead_ends(rows: Indices, tail: Indices, head: Indices) -> Indices:
+    """The parts that something leads to and something leads away from: crossings at flat angles leave stubs."""
+    while True:
+        on = np.isin(head[rows], tail[rows]) & np.isin(tail[rows], head[rows])
+        if on.all():
+            return rows
+        rows = rows[on]
+
+
 def _follow(begin: int, tail: Indices, head: Indices, leaving: dict[int, list[int]]) -> list[int]:
     """The parts from one on until none leaves or the first point is reached again; they are used up."""
     chain = [begin]
@@ -111,6 +125,9 @@ def _lines_and_arcs(path: Pieces, tolerance: float) -> Pieces:
     for i, kind in enumerate(path.kind.tolist()):
         if kind == PieceKind.ELLIPSE:
             rows += _ellipse_cubics(path.p[i])
+        elif kind == PieceKind.ARC and path.p[i, 2] > FLAT_RADIUS:
+            (line,) = flatten(path.take([i]), FINE)
+            rows += [line_row(complex(a), complex(b)) for a, b in pairwise(line)]
         else:
             rows.append(
                 (kind, path.start[i].real, path.start[i].imag, path.end[i].real, path.end[i].imag, *path.p[i])

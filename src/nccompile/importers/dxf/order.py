@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from nccompile.importers.dxf.grid import Indices
 from nccompile.importers.dxf.join import Paths
-from nccompile.importers.dxf.pieces import Complexes, PieceKind, Pieces, lengths, reverse, sample, split
+from nccompile.importers.dxf.pieces import Complexes, PieceKind, Pieces, end_tangents, lengths, reverse, split
 from nccompile.kernels import expect_work
 from nccompile.kernels.nearest import near_stops, nearest_first
 from nccompile.kernels.tour import improve, tour_length
@@ -28,9 +28,6 @@ WORK_A_STOP = 25
 
 LARGE_TOUR, MOST_TRIES, KICK = 200, 12, 50
 """Paths from which a tour is not perturbed any more, perturbations, and stops that one may reach over."""
-
-STEP = 1e-6
-"""Parameter step of the differences that give end directions."""
 
 Floats = npt.NDArray[np.float64]
 Ends: TypeAlias = tuple[Floats, Floats, Floats, Floats]
@@ -308,10 +305,3 @@ def _from_longest(paths: Paths) -> Paths:
         parts.append(path)
         first.append(first[-1] + len(path))
     return Paths(Pieces.join(parts), np.array(first), paths.closed, paths.group)
-
-
-def end_tangents(pieces: Pieces) -> tuple[Complexes, Complexes]:
-    """Shape (n,) each: unit directions of every piece at its start and at its end."""
-    points = sample(pieces, np.array([0.0, STEP, 1.0 - STEP, 1.0]))
-    enter, leave = points[:, 1] - points[:, 0], points[:, 3] - points[:, 2]
-    return enter / np.maximum(np.abs(enter), 1e-300), leave / np.maximum(np.abs(leave), 1e-300)

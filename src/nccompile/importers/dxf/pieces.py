@@ -30,6 +30,7 @@ __all__ = [
     "bulge_row",
     "cubic_row",
     "ellipse_row",
+    "end_tangents",
     "flatten",
     "lengths",
     "line_row",
@@ -330,6 +331,23 @@ def lengths(pieces: Pieces) -> Floats:
         points = sample(pieces.take(bent), np.linspace(0.0, 1.0, 65))
         out[bent] = np.abs(np.diff(points, axis=1)).sum(axis=1)
     return out
+
+
+def end_tangents(pieces: Pieces) -> tuple[Complexes, Complexes]:
+    """Shape (n,) each: unit directions of every piece at its start and at its end; 0 for points."""
+    a, b, p = pieces.start, pieces.end, pieces.p
+    enter, leave = b - a, b - a
+    arc, ellipse, cubic = (pieces.kind == k for k in (PieceKind.ARC, PieceKind.ELLIPSE, PieceKind.CUBIC))
+    turn = 1j * np.sign(p[:, 4])
+    enter = np.where(arc, turn * np.exp(1j * p[:, 3]), enter)
+    leave = np.where(arc, turn * np.exp(1j * (p[:, 3] + p[:, 4])), leave)
+    axis = np.exp(1j * p[:, 4]) * np.sign(p[:, 6])
+    ends = [axis * (1j * p[:, 3] * np.cos(t) - p[:, 2] * np.sin(t)) for t in (p[:, 5], p[:, 5] + p[:, 6])]
+    enter, leave = np.where(ellipse, ends[0], enter), np.where(ellipse, ends[1], leave)
+    c1, c2 = p[:, 0] + 1j * p[:, 1], p[:, 2] + 1j * p[:, 3]
+    enter = np.where(cubic, np.where(c1 != a, c1 - a, np.where(c2 != a, c2 - a, b - a)), enter)
+    leave = np.where(cubic, np.where(c2 != b, b - c2, np.where(c1 != b, b - c1, b - a)), leave)
+    return enter / np.maximum(np.abs(enter), 1e-300), leave / np.maximum(np.abs(leave), 1e-300)
 
 
 def flatten(pieces: Pieces, tolerance: float) -> list[Complexes]:
