@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import random
 from dataclasses import fields
 from typing import Any
 
@@ -57,3 +58,26 @@ def compare(data: bytes, part: int = PART, **options: Any) -> tuple[Toolpath, li
     assert counts_there == counts
     assert [render(d, file) for d in found[:5]] == [render(d, text) for d in found[:5]]
     return columns, found
+
+
+def damaged(data: bytes, generator: random.Random) -> bytes:
+    """A copy with some bytes changed, lines cut, merged or doubled."""
+    lines = data.splitlines(keepends=True)
+    for _ in range(generator.randint(1, 4)):
+        at = generator.randrange(len(lines))
+        line = lines[at]
+        place = generator.randrange(len(line) + 1)
+        kind = generator.randrange(4)
+        if kind == 0:
+            lines[at] = (
+                line[:place]
+                + bytes([generator.choice(b"0189.-+GXYZEFIJRN ()$%/;\xe4\x00,") for _ in range(2)])
+                + line[place + 2 :]
+            )
+        elif kind == 1:
+            lines[at] = line[:place]
+        elif kind == 2:
+            lines[at] = line.rstrip(b"\r\n")
+        else:
+            lines[at] = line * 2
+    return b"".join(lines)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from nccompile.kernels import use
 from nccompile.source import LargeSource, Source
-from tests.scanner.routes import compare, decoded, differences, large
+from tests.scanner.routes import compare, damaged, decoded, differences, large
 
 SAMPLES = sorted((Path(__file__).parents[2] / "samples").glob("*.nc"))
 
@@ -73,29 +73,6 @@ def test_samples_and_damaged_copies(sample: Path) -> None:
     generator = random.Random(sample.stem)
     for _ in range(25):
         compare(damaged(data, generator), generator.choice([5, 100, 1 << 20]))
-
-
-def damaged(data: bytes, generator: random.Random) -> bytes:
-    """A copy with some bytes changed, lines cut, merged or doubled."""
-    lines = data.splitlines(keepends=True)
-    for _ in range(generator.randint(1, 4)):
-        at = generator.randrange(len(lines))
-        line = lines[at]
-        place = generator.randrange(len(line) + 1)
-        kind = generator.randrange(4)
-        if kind == 0:
-            lines[at] = (
-                line[:place]
-                + bytes([generator.choice(b"0189.-+GXYZEFIJRN ()$%/;\xe4\x00,") for _ in range(2)])
-                + line[place + 2 :]
-            )
-        elif kind == 1:
-            lines[at] = line[:place]
-        elif kind == 2:
-            lines[at] = line.rstrip(b"\r\n")
-        else:
-            lines[at] = line * 2
-    return b"".join(lines)
 
 
 @pytest.mark.parametrize(
