@@ -2,8 +2,9 @@
 
     python -m benchmarks.bench_front_end [FILE]
 
-The program is of the kind of `finish` of the peers' comparison: short lines in three axes, N on every line, F now
-and then; or FILE.  Figures a core are by processor time, which other jobs disturb less.  Kernels are warm: compiled before, as in every run but the first on a computer.
+The program is of the kind of `finish` of the peers' comparison (short lines in three axes, N on every line, F
+now and then), or FILE.  Figures a core are by processor time, which other jobs disturb less.  Kernels are warm:
+compiled before, as in every run but the first on a computer.
 """
 
 from __future__ import annotations
