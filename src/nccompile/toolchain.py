@@ -1,6 +1,6 @@
 """The stages in plain order, from program text to OutQueue; reading this file is reading the product.
 
-    source -> decode -> check_marks, check_axes, check_travel -> plan -> write | run | sample | plot
+    source -> decode -> passes -> check_marks, check_axes, check_travel -> plan -> write | run | sample | plot
 
 Every stage is a generator over chunks: a program of any length passes through in bounded memory, and
 whoever pulls at the end (a file, a cyclic task, a plot) drives the ones before it.  Findings in the user's
@@ -11,16 +11,17 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 
 from nccompile.backend import ncq
 from nccompile.decoder import Decoded, DecodeOptions, decode
-from nccompile.diagnostics import Diagnostics
+from nccompile.diagnostics import Diagnostics, Severity
 from nccompile.machine.limits import check_axes, check_travel
 from nccompile.machine.model import Machine
 from nccompile.passes.check_marks import check_marks
+from nccompile.passes.pipeline import Pipeline
 from nccompile.passes.velocity import (
     LOOK_AHEAD,
     SOFTMOTION,
@@ -47,7 +48,8 @@ class Options:
     decoder: start position, variables, skipped blocks, jump limit;  angle_tolerance [deg] and time_law: those
     of the machine if None;  verify: check the invariants of the toolpath after every stage;  planner: one of
     `PLANNERS`, window: rows it looks ahead, None for all, junction_deviation [mm] (`PlanSettings`);  losses: gather
-    where the time goes.
+    where the time goes;  passes: path passes between decoding and planning;  print_after: name of a pass, and what
+    takes the chunks it makes;  measure: whether passes measure their deviation.
     """
 
     machine: Machine
@@ -59,6 +61,9 @@ class Options:
     window: int | None = WINDOW
     junction_deviation: float | None = None
     losses: bool = False
+    passes: Pipeline = field(default_factory=Pipeline)
+    print_after: tuple[str, Callable[[Toolpath], None]] | None = None
+    measure: bool = False
 
 
 @dataclass
@@ -108,6 +113,10 @@ class Compilation:
         """The toolpath as programmed, without velocities, checked against axes and travel of the machine."""
         return self._checked(self._verified(self._program()))
 
+    def passed(self) -> Iterator[Toolpath]:
+        """The toolpath behind the path passes, without velocities, checked as `decoded`."""
+        return self._checked(self._passed(self._program()))
+
     def planned(self) -> Iterator[Toolpath]:
         """The toolpath with its velocities; pulling it counts its time."""
         program = self._program()
@@ -122,7 +131,7 @@ class Compilation:
         )
         self.time.smoothing = settings.smoothing
         self.time.losses = Losses(settings) if self.options.losses else None
-        planned = plan(self._checked(self._verified(program)), settings)
+        planned = plan(self._checked(self._passed(program)), settings)
         if settings.planner == SOFTMOTION:
             planned = check_excess(planned, settings, self.source, self.diagnostics)
         return self.time.along(self._verified(planned))
@@ -157,6 +166,24 @@ class Compilation:
 
     def _verified(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
         return verify_chain(chunks) if self.options.verify else iter(chunks)
+
+    def _passed(self, program: Decoded) -> Iterator[Toolpath]:
+        """The program behind all passes, each verified and printed if that was asked for."""
+        options = self.options
+        return options.passes.run(
+            self._verified(program), feed=options.machine.path.feed, diagnose=self._diagnose,
+            after=self._behind, measure=options.measure,
+        )  # fmt: skip
+
+    def _behind(self, name: str, chunks: Iterator[Toolpath]) -> Iterator[Toolpath]:
+        wanted = self.options.print_after
+        for chunk in self._verified(chunks):
+            if wanted is not None and wanted[0] == name:
+                wanted[1](chunk)
+            yield chunk
+
+    def _diagnose(self, code: str, severity: Severity, message: str, line: int, help: str) -> None:
+        self.diagnostics.report(code, severity, message, self.source, self.source.text_span(line), help)
 
     def _checked(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
         for chunk in check_marks(chunks, self.source, self.diagnostics):

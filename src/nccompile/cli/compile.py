@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +17,7 @@ from nccompile.cli.options import (
     JunctionDeviation,
     MachineFile,
     MaxJumps,
+    Passes,
     PlannerName,
     PlannerOption,
     Report,
@@ -24,10 +27,12 @@ from nccompile.cli.options import (
     Verify,
     Window,
 )
+from nccompile.errors import UsageError
 
 if TYPE_CHECKING:
     from nccompile.backend.ncq import Meta
-    from nccompile.toolchain import Compilation
+    from nccompile.toolchain import Compilation, Options
+    from nccompile.toolpath import Toolpath
 
 __all__ = ["compile_program"]
 
@@ -48,6 +53,11 @@ def compile_program(
     planner: PlannerOption = PlannerName.LOOK_AHEAD,
     window: Window = None,
     junction_deviation: JunctionDeviation = None,
+    passes: Passes = None,
+    print_after: Annotated[
+        str | None, typer.Option("--print-after", metavar="PASS", help="Print the path behind a pass.")
+    ] = None,
+    time_passes: Annotated[bool, typer.Option("--time-passes", help="Print the time of each pass.")] = False,
     verify: Verify = False,
     diagnostics: DiagnosticsFormat = Report.TEXT,
     report: Annotated[
@@ -63,17 +73,49 @@ def compile_program(
     place = output_of(program, output, ".ncq")
     settings = ProgramOptions(
         start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
     )  # fmt: skip
-    options = settings.resolve(machine_of(machine))
+    options = replace(
+        settings.resolve(machine_of(machine)),
+        losses=report is not None,
+        measure=report is not None or time_passes,
+    )
+    if print_after is not None:
+        options = replace(options, print_after=(_known(print_after, options), _print_chunk))
     compilation = Compilation(source, options)
     with progress(source):
         meta = compilation.write(place)
     if report is not None:
         _write_report(report, compilation, meta, place)
+    if time_passes:
+        _print_times(compilation)
     finish(compilation, diagnostics)
     assert meta is not None
     print(_summary(meta, compilation, place))
+
+
+def _known(name: str, options: Options) -> str:
+    """The name of a pass that runs; raises UsageError."""
+    names = [p.name for p in options.passes.passes]
+    if name not in names:
+        raise UsageError(f"--print-after {name}: -p names no such pass, but {', '.join(names) or 'none'}")
+    return name
+
+
+def _print_chunk(chunk: Toolpath) -> None:
+    from nccompile.toolpath.text import format_toolpath
+
+    sys.stderr.write(format_toolpath(chunk))
+
+
+def _print_times(compilation: Compilation) -> None:
+    """One line a pass: time, segments in and out, largest deviation."""
+    for report in compilation.options.passes.reports:
+        off = "" if report.deviation is None else f", deviation {report.deviation:.3g} mm"
+        print(
+            f"{report.name:16} {report.seconds:8.3f} s  {report.segments_in} -> {report.segments_out} segments{off}",
+            file=sys.stderr,
+        )
 
 
 def _summary(meta: Meta, compilation: Compilation, place: Path) -> str:
@@ -94,7 +136,9 @@ def _write_report(path: Path, compilation: Compilation, meta: Meta | None, place
         "errors": compilation.diagnostics.errors,
         "diagnostics": json.loads(to_json(compilation.diagnostics)),
         "counts": dict(sorted(compilation.diagnostics.counts.items())),
+        "passes": [r.as_dict() for r in compilation.options.passes.reports],
         "queue": None if meta is None else meta.as_dict(),
+        "velocity": None if compilation.time.losses is None else compilation.time.losses.as_dict(),
     }
     with replacing(path) as (file, commit):
         file.write((json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())

@@ -20,6 +20,7 @@ from nccompile.cli.options import (
     JunctionDeviation,
     MachineFile,
     MaxJumps,
+    Passes,
     PlannerName,
     PlannerOption,
     Report,
@@ -48,9 +49,10 @@ class Form(StrEnum):
 
 
 class Stage(StrEnum):
-    """After which stage: as decoded, or with velocities."""
+    """After which stage: as decoded, behind the path passes, or with velocities."""
 
     DECODED = "decoded"
+    PASSES = "passes"
     PLANNED = "planned"
 
 
@@ -70,6 +72,7 @@ def dump(
     planner: PlannerOption = PlannerName.LOOK_AHEAD,
     window: Window = None,
     junction_deviation: JunctionDeviation = None,
+    passes: Passes = None,
     verify: Verify = False,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
@@ -79,7 +82,7 @@ def dump(
 
     options = ProgramOptions(
         start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
     )  # fmt: skip
     chunks = _chunks(path, machine_of(machine), options, stage, diagnostics)
     if form is Form.TEXT:
@@ -97,11 +100,12 @@ def _chunks(
     from nccompile.cli.queues import STDIN, is_queue
     from nccompile.toolchain import Compilation
 
-    if stage is not Stage.DECODED:
+    if stage not in (Stage.DECODED, Stage.PASSES):
         return open_job(path, machine, options, form).chunks()
     if path != STDIN and is_queue(path):
         raise UsageError(f"{path} is an OutQueue: it holds the planned stage only")
-    return compiled(path, machine, options, form, Compilation.decoded)[1]
+    wanted = Compilation.decoded if stage is Stage.DECODED else Compilation.passed
+    return compiled(path, machine, options, form, wanted)[1]
 
 
 def _write_jsonl(chunks: Iterable[Toolpath]) -> None:

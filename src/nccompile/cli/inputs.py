@@ -16,6 +16,7 @@ from nccompile.cli.report import report
 from nccompile.decoder import DecodeOptions
 from nccompile.errors import UsageError
 from nccompile.machine.model import Machine, default_machine, load
+from nccompile.passes.pipeline import parse as parse_passes
 from nccompile.passes.velocity import LOOK_AHEAD, WINDOW
 from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options
@@ -47,6 +48,7 @@ class ProgramOptions:
     planner: str | None = None
     window: int | None = None
     junction_deviation: float | None = None
+    passes: str | None = None
 
     def resolve(self, machine: Machine) -> Options:
         """The options of a compilation; raises UsageError."""
@@ -60,6 +62,7 @@ class ProgramOptions:
         return Options(
             machine, decoder, self.angle_tolerance, self.time_law, self.verify, self.planner or LOOK_AHEAD,
             WINDOW if self.window is None else self.window or None, self.junction_deviation,
+            passes=parse_passes(self.passes or ""),
         )  # fmt: skip
 
     @property

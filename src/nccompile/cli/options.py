@@ -20,6 +20,7 @@ __all__ = [
     "JunctionDeviation",
     "MachineFile",
     "MaxJumps",
+    "Passes",
     "PlannerName",
     "PlannerOption",
     "Report",
@@ -100,6 +101,15 @@ JunctionDeviation = Annotated[
     float | None,
     typer.Option(
         "--junction-deviation", metavar="MM", min=1e-6, max=10.0, help="How far a corner may be rounded."
+    ),
+]
+Passes = Annotated[
+    str | None,
+    typer.Option(
+        "--passes",
+        "-p",
+        metavar="SPEC",
+        help="Path passes, e.g. tool-radius{radius=3},fit-arcs{tolerance=0.005}.",
     ),
 ]
 Verify = Annotated[bool, typer.Option("--verify", help="Check the toolpath after every stage.")]

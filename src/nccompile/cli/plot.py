@@ -16,6 +16,7 @@ from nccompile.cli.options import (
     JunctionDeviation,
     MachineFile,
     MaxJumps,
+    Passes,
     PlannerName,
     PlannerOption,
     Report,
@@ -49,14 +50,17 @@ def plot(
     planner: PlannerOption = PlannerName.LOOK_AHEAD,
     window: Window = None,
     junction_deviation: JunctionDeviation = None,
+    passes: Passes = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
     """Draw the path, and velocity and acceleration over time."""
     from nccompile.backend.samples import sample
-    from nccompile.cli.inputs import ProgramOptions, machine_of, open_job, output_of
+    from nccompile.cli.inputs import ProgramOptions, machine_of, open_job, output_of, read_program
+    from nccompile.cli.queues import STDIN
     from nccompile.kernels import expect_work
     from nccompile.machine.limits import limits
     from nccompile.passes.velocity.settings import LAWS
+    from nccompile.toolchain import Compilation
     from nccompile.view.motion import gather
     from nccompile.view.plot import save
 
@@ -66,12 +70,15 @@ def plot(
     axes_of = machine_of(machine)
     options = ProgramOptions(
         start, define, skip_blocks, max_jumps, angle_tolerance, time_law, False,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
     )  # fmt: skip
     job = open_job(path, axes_of, options, diagnostics)
     cycle = axes_of.cycle * max(1, ceil(job.job_time / axes_of.cycle / MOST_SAMPLES))
     expect_work(int(job.job_time / cycle))
     motion = gather(job.axes, sample(job.chunks(), cycle, LAWS[job.time_law], job.smoothing))
     title = f"{job.name}: {job.segments} segments, {job.job_time:.3f} s"
-    save(place, job.chunks(), motion, limits(axes_of, job.axes), title=title)
+    before = None
+    if passes and path != STDIN:
+        before = Compilation(read_program(path), options.resolve(axes_of)).decoded()
+    save(place, job.chunks(), motion, limits(axes_of, job.axes), title=title, before=before)
     print(f"{place}: path, and velocity and acceleration over {job.job_time:.3f} s")

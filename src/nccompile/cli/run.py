@@ -17,6 +17,7 @@ from nccompile.cli.options import (
     JunctionDeviation,
     MachineFile,
     MaxJumps,
+    Passes,
     PlannerName,
     PlannerOption,
     Report,
@@ -76,6 +77,7 @@ def run_program(
     planner: PlannerOption = PlannerName.LOOK_AHEAD,
     window: Window = None,
     junction_deviation: JunctionDeviation = None,
+    passes: Passes = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
     """Run an OutQueue or program on virtual drives and print what happened."""
@@ -88,7 +90,7 @@ def run_program(
     axes = machine_of(machine)
     options = ProgramOptions(
         start, define, skip_blocks, max_jumps, angle_tolerance, time_law, False,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
     )  # fmt: skip
     job = open_job(path, axes, options, diagnostics)
     if job.machine_sha256 != machine_digest(axes):

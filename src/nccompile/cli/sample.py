@@ -16,6 +16,7 @@ from nccompile.cli.options import (
     JunctionDeviation,
     MachineFile,
     MaxJumps,
+    Passes,
     PlannerName,
     PlannerOption,
     Report,
@@ -48,6 +49,7 @@ def sample(
     planner: PlannerOption = PlannerName.LOOK_AHEAD,
     window: Window = None,
     junction_deviation: JunctionDeviation = None,
+    passes: Passes = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
     """Write the set positions of every cycle: t, axes, path velocity, source line, status, switch word."""
@@ -64,7 +66,7 @@ def sample(
     axes_of = machine_of(machine)
     options = ProgramOptions(
         start, define, skip_blocks, max_jumps, angle_tolerance, time_law, False,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation,
+        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
     )  # fmt: skip
     job = open_job(path, axes_of, options, diagnostics)
     cycle = seconds_from_us(cycle_us or axes_of.cycle_us)

@@ -1,4 +1,4 @@
-"""check-marks: says when the program asks for a path pass that is not there.
+"""check-marks: says when the program asks for a path pass that is not turned on.
 
 NC301   G41, G42, G51, G52 or G61 has no effect; one finding for each of them, where it first acts
 """
@@ -22,6 +22,9 @@ _ASKED = {
     Mark.ROUND: ("G52", "corner rounding"),
     Mark.LOOP: ("G61", "loop avoidance"),
 }
+_PASSES = {
+    "G41": "tool-radius", "G42": "tool-radius", "G51": "smooth-corners", "G52": "round-corners", "G61": "avoid-loops",
+}  # fmt: skip
 
 
 def check_marks(chunks: Iterable[Toolpath], source: Source, diagnostics: Diagnostics) -> Iterator[Toolpath]:
@@ -35,8 +38,9 @@ def check_marks(chunks: Iterable[Toolpath], source: Source, diagnostics: Diagnos
             diagnostics.report(
                 "NC301",
                 Severity.WARNING,
-                f"{code} has no effect: this version does no {what}, the path runs as programmed",
+                f"{code} has no effect: no pass does {what}, the path runs as programmed",
                 source,
                 source.text_span(line),
+                f"turn it on with -p {_PASSES[code]}",
             )
         yield chunk

@@ -31,6 +31,7 @@ __all__ = ["Limits", "plot_dynamics", "plot_path", "save"]
 
 _RAPID, _FEED, _INK, _GRID = "#2f9e44", "#1c5fb8", "#222222", "#d9dde3"
 _SWITCH, _M = "#d9480f", "#7048a8"
+_BEFORE = "#c9ced6"
 _AXIS_COLORS = ("#c92a2a", "#2f9e44", "#1c5fb8", "#e08700", "#7048a8", "#0b8793", "#a05a2c", "#d6338a",
                 "#5c6770", "#80961a", "#3d2c8d")  # fmt: skip
 _STYLE: Any = {
@@ -63,11 +64,13 @@ class Limits(Protocol):
         """Shape (k,) [mm/s² or deg/s²]."""
 
 
-def plot_path(chunks: Iterable[Toolpath], *, title: str = "") -> Figure:
-    """A figure of the path alone."""
+def plot_path(
+    chunks: Iterable[Toolpath], *, title: str = "", before: Iterable[Toolpath] | None = None
+) -> Figure:  # fmt: skip
+    """A figure of the path alone; before: the path before the path passes, light grey below it."""
     with mpl.rc_context(_STYLE):
         figure = _figure(11.0, 8.0, title)
-        _path(figure, draw(chunks), stacked=False)
+        _path(figure, draw(chunks), stacked=False, before=None if before is None else draw(before))
     return figure
 
 
@@ -86,8 +89,11 @@ def save(
     limits: Limits | None = None,
     *,
     title: str = "",
+    before: Iterable[Toolpath] | None = None,
 ) -> None:
     """Writes the picture of a path, and of its dynamics if samples are given, as PNG, SVG or PDF.
+
+    before: the path as it was before the path passes, drawn light grey below it.
 
     Raises:   UsageError: a file name that ends in something else.  OSError: the file cannot be written.
     """
@@ -96,13 +102,13 @@ def save(
     if kind not in stamps:
         raise UsageError(f"{file.name}: pictures are written as png, svg or pdf")
     if motion is None:
-        figure = plot_path(chunks, title=title)
+        figure = plot_path(chunks, title=title, before=before)
     else:
         with mpl.rc_context(_STYLE):
             figure = _figure(16.0, 9.0, title)
             halves: Any = figure.subfigures(1, 2)
             left, right = halves
-            _path(left, draw(chunks), stacked=True)
+            _path(left, draw(chunks), stacked=True, before=None if before is None else draw(before))
             _dynamics(right, motion, limits)
     picture = io.BytesIO()
     with mpl.rc_context(_STYLE):
@@ -118,7 +124,9 @@ def _figure(width: float, height: float, title: str) -> Figure:
     return figure
 
 
-def _path(figure: Figure | SubFigure, drawing: Drawing, *, stacked: bool) -> None:
+def _path(
+    figure: Figure | SubFigure, drawing: Drawing, *, stacked: bool, before: Drawing | None = None
+) -> None:
     """The XY view, and the isometric one below or beside it if Z moves."""
     low, high = drawing.box()
     solid = high[2] - low[2] > 0.0
@@ -128,23 +136,28 @@ def _path(figure: Figure | SubFigure, drawing: Drawing, *, stacked: bool) -> Non
         plane, iso = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
     else:
         plane, iso = figure.subplots(1, 2, width_ratios=(1.3, 1.0))
-    _view(plane, drawing, np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), labels=True)
+    _view(plane, drawing, np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), labels=True, before=before)
     plane.set(title="Path, X-Y", xlabel="X [mm]", ylabel="Y [mm]")
     if solid:
         c, s = cos(_PROJECTION_ANGLE), sin(_PROJECTION_ANGLE)
-        _view(iso, drawing, np.array([[c, -c, 0.0], [s, s, 1.0]]), labels=False)
+        _view(iso, drawing, np.array([[c, -c, 0.0], [s, s, 1.0]]), labels=False, before=before)
         iso.set(title=f"Path, isometric   (Z {low[2]:g} .. {high[2]:g} mm)", xticks=[], yticks=[])
         for spine in iso.spines.values():
             spine.set_visible(False)
         _triad(iso, (c, s))
 
 
-def _view(axes: Any, drawing: Drawing, projection: Floats, *, labels: bool) -> None:
+def _view(
+    axes: Any, drawing: Drawing, projection: Floats, *, labels: bool, before: Drawing | None
+) -> None:  # fmt: skip
     """The polylines and marks in one projection, Shape (2, 3)."""
     corners = [thin(line @ projection.T, 1e-300) for line in (drawing.rapid, drawing.feed)]
     points = np.vstack([*corners, np.array([drawing.start, drawing.end]) @ projection.T])
     span = float(np.max(np.nanmax(points, axis=0) - np.nanmin(points, axis=0))) or 1.0
     rapid, feed = (thin(line, span / _CELLS) for line in corners)
+    if before is not None:
+        old = thin(thin(before.feed @ projection.T, 1e-300), span / _CELLS)
+        axes.plot(*old.T, color=_BEFORE, linewidth=2.0, label="before passes", zorder=1)
     axes.plot(*rapid.T, color=_RAPID, linewidth=0.9, dashes=(5, 3), label="rapid", zorder=2)
     axes.plot(
         *feed.T,
