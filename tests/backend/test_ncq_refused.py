@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from nccompile.backend import ncq
-from nccompile.backend.ncq_layout import columns, counts, member_bytes, members
+from nccompile.backend.ncq_layout import columns, counts, member_data, members
 from nccompile.errors import QueueError
 from nccompile.toolpath import Toolpath
 from tests.backend.paths import PROVENANCE, same, small
@@ -198,7 +198,7 @@ def test_rows_that_do_not_hold_together(tmp_path: Path, sound: bytes, name: str)
     def put_columns(content: dict[str, bytes]) -> None:
         unsound = UNSOUND[name](small())
         for member, column in zip(members(0, counts(unsound), 3), columns(unsound), strict=True):
-            content[member.name] = member_bytes(member, column)
+            content[member.name] = member.header + bytes(member_data(member, column))
 
     path = tmp_path / "part.ncq"
     path.write_bytes(_rebuilt(sound, put_columns))

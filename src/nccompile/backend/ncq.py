@@ -25,7 +25,7 @@ import numpy as np
 
 from nccompile.backend.files import replacing
 from nccompile.backend.ncq_check import check_chunk
-from nccompile.backend.ncq_layout import META, Counts, Member, columns, counts, member_bytes, members
+from nccompile.backend.ncq_layout import META, Counts, Member, columns, counts, member_data, members
 from nccompile.backend.ncq_meta import Meta, Provenance
 from nccompile.backend.npz import npz_entry
 from nccompile.backend.totals import Totals, TotalsGatherer
@@ -82,7 +82,11 @@ def _write_zip(
             names = max(names, chunk.names, key=len)
             gatherer.add(chunk)
             for member, column in zip(members(number, table[-1], len(axes)), columns(chunk), strict=True):
-                archive.writestr(npz_entry(member.name), member_bytes(member, column))
+                entry = npz_entry(member.name)
+                entry.file_size = member.size
+                with archive.open(entry, "w") as target:
+                    target.write(member.header)
+                    target.write(member_data(member, column))
         if not table:
             gatherer.add(Toolpath.empty())
         totals = gatherer.totals(job_time())

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from nccompile.backend.npz import npy_header
 from nccompile.toolpath import CURVE_PARAMETERS, Toolpath
 
-__all__ = ["META", "Counts", "Member", "columns", "counts", "folder", "member_bytes", "members"]
+__all__ = ["META", "Counts", "Member", "columns", "counts", "folder", "member_data", "members"]
 
 META = "meta.json"
 """The member that describes the others; the last one of the file."""
@@ -108,11 +108,11 @@ def columns(chunk: Toolpath) -> Iterator[npt.NDArray[Any]]:
             yield getattr(chunk.events, name)
 
 
-def member_bytes(member: Member, array: npt.NDArray[Any]) -> bytes:
-    """The content of a member; the array must have its shape, and is stored in its type."""
+def member_data(member: Member, array: npt.NDArray[Any]) -> memoryview:
+    """What follows a member's header: the array, which must have its shape, in the type it is stored in."""
     if array.shape != member.shape:
         raise ValueError(f"{member.name} has shape {array.shape}, not {member.shape}")
-    return member.header + np.ascontiguousarray(array, dtype=member.dtype).tobytes()
+    return np.ascontiguousarray(array, dtype=member.dtype).reshape(-1).view(np.uint8).data
 
 
 def _member(name: str, dtype: str, shape: tuple[int, ...]) -> Member:

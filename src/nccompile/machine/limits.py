@@ -99,9 +99,9 @@ def check_travel(chunk: Toolpath, machine: Machine, source: Source, diagnostics:
     Segments that start outside are the same excursion and are passed over, so the findings do not depend on
     the size of the chunks.  Arcs, ellipses and cubics are checked over their whole course.
     """
-    if not len(chunk):
-        return
     low, high = travel(machine, chunk.axes)
+    if not len(chunk) or not (np.isfinite(low).any() or np.isfinite(high).any()):
+        return
     shift = offsets(machine, chunk.axes)
     least, greatest = extents(chunk)
     starts = chunk.starts() + shift
