@@ -53,6 +53,20 @@ def test_random_programs_give_what_compile_gives(text: str) -> None:
     assert linted(source) == compiled(source)
 
 
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_large_programs_are_decoded_in_columns_with_the_same_findings(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("nccompile.lint.program.STREAMED", 0)
+    assert linted(read(path)) == compiled(read(path))
+
+
+@pytest.mark.parametrize("text", ["\ufeff% a\nN10 G1 X1 F20", "% \ud800\nN10 G1 X1 F20"])
+def test_text_that_has_no_bytes_is_decoded_too(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("nccompile.lint.program.STREAMED", 0)
+    assert linted(Source("a.nc", text)) == compiled(Source("a.nc", text))
+
+
 def test_past_the_limit_findings_are_counted_as_compile_does() -> None:
     text = "% a\nN10 G1 F20\n" + "\n".join(f"N{n} X{n} K1" for n in range(20, 50))
     report = checked(text, Config(), limit=None)

@@ -96,6 +96,15 @@ def test_lint_command(command: Command, tmp_path: Path) -> None:  # noqa: F811
     assert "       1  NC052  " in command("lint", "noted.nc", "--statistics").out
 
 
+def test_a_file_without_text_reads_as_compile_says(command: Command, tmp_path: Path) -> None:  # noqa: F811
+    for text in ("", "\n \n"):
+        (tmp_path / "empty.nc").write_text(text)
+        short, whole = command("lint", "empty.nc"), command("lint", "empty.nc", "--format", "json")
+        assert short.code == whole.code == 1
+        assert short.err == whole.err == "empty.nc: 1 error\n"
+        assert short.out == command("compile", "empty.nc").err.replace(short.err, "")
+
+
 def test_lint_command_fixes_files_and_streams(command: Command, tmp_path: Path) -> None:  # noqa: F811
     path = tmp_path / "a.nc"
     path.write_bytes(b"% \xe4\r\nn10 g1 x1 f20\r\n")
@@ -113,12 +122,18 @@ def test_lint_command_fixes_files_and_streams(command: Command, tmp_path: Path) 
     ("arguments", "message"),
     [
         (("lint", "missing.nc"), "missing.nc cannot be read"),
-        (("lint", "x.ncq"), "x.ncq is an OutQueue"),
+        (("lint", "queue.nc"), "queue.nc is an OutQueue"),
         (("lint", "-", "--select", "E501"), "E501 is no code"),
         (("fmt", "missing.nc"), "missing.nc cannot be read"),
     ],
 )
-def test_wrong_use_is_refused(command: Command, arguments: tuple[str, ...], message: str) -> None:  # noqa: F811
+def test_wrong_use_is_refused(
+    command: Command,  # noqa: F811
+    tmp_path: Path,
+    arguments: tuple[str, ...],
+    message: str,
+) -> None:
+    (tmp_path / "queue.nc").write_bytes(b"PK\x03\x04")
     code, out, err = command(*arguments)
     assert (code, out) == (2, "")
     assert message in err

@@ -26,8 +26,7 @@ def format_programs(
     ] = None,
 ) -> None:
     """Lay part programs out: upper case, one blank between words; the toolpath stays the same."""
-    from nccompile.cli.lint import programs_in, read_bytes, store
-    from nccompile.cli.queues import STDIN
+    from nccompile.cli.lint import STDIN, programs_in, read_bytes, store
     from nccompile.lint.config import Config, config_for
     from nccompile.lint.fmt import format_text, renumbered
     from nccompile.lint.rewrite import encoding_of

@@ -15,7 +15,10 @@ from nccompile.cli.options import Define, MachineFile, MaxJumps, SkipBlocks, Sta
 if TYPE_CHECKING:
     from nccompile.lint.engine import Report
 
-__all__ = ["Format", "lint_programs", "programs_in", "read_bytes", "store"]
+__all__ = ["STDIN", "Format", "lint_programs", "programs_in", "read_bytes", "store"]
+
+STDIN = Path("-")
+ZIP = b"PK\x03\x04"
 
 SUFFIXES = {".nc", ".cnc", ".din", ".iso"}
 """Files that are taken from folders."""
@@ -56,10 +59,14 @@ def lint_programs(
     max_jumps: MaxJumps = None,
 ) -> None:
     """Check part programs; settings come from nccompile.toml or pyproject.toml above them."""
+    selected, ignored = _codes(select), _codes(ignore)
+    sources = {path: read_bytes(path) for path in programs_in(files)}
+    plain = form is Format.TEXT and machine is None and not (fix or statistics)
+    if plain and all(not data.strip() for data in sources.values()):
+        _say_empty(sources)
     import gc
 
     from nccompile.cli.inputs import ProgramOptions, machine_of
-    from nccompile.cli.queues import STDIN
     from nccompile.lint.config import Config, config_for
     from nccompile.lint.engine import lint
     from nccompile.lint.fix import apply_fixes
@@ -71,11 +78,10 @@ def lint_programs(
     reports = []
     collecting = gc.isenabled()
     gc.disable()  # millions of words without cycles: looking for some takes a third of the time
-    for path in programs_in(files):
-        config = (Config() if path == STDIN else config_for(path)).with_codes(_codes(select), _codes(ignore))
+    for path, data in sources.items():
+        config = (Config() if path == STDIN else config_for(path)).with_codes(selected, ignored)
         options = settings.resolve(machine_of(machine if machine is not None else config.machine))
-        data = read_bytes(path)
-        source = Source.from_bytes("<stdin>" if path == STDIN else str(path), data)
+        source = Source.from_bytes(_name(path), data)
         if fix:
             fixed = apply_fixes(source, options, config, limit)
             store(path, data, encoding_of(data).encode(fixed.text))
@@ -86,10 +92,29 @@ def lint_programs(
             reports.append(lint(source, options, config, limit=limit))
     if collecting:
         gc.enable()
-    to_stderr = fix and STDIN in files
-    out = sys.stderr if to_stderr else sys.stdout
+    out = sys.stderr if fix and STDIN in files else sys.stdout
     out.write(_statistics(reports) if statistics else FORMATS[form](reports))
     _close(reports, strict)
+
+
+def _name(path: Path) -> str:
+    return "<stdin>" if path == STDIN else str(path)
+
+
+def _say_empty(sources: dict[Path, bytes]) -> None:
+    """Reports programs without any text; the parser alone says all, and the rest of us starts slowly."""
+    from nccompile.diagnostics import Diagnostics, render
+    from nccompile.parser import parse
+    from nccompile.source import Source
+
+    for path, data in sources.items():
+        source, diagnostics = Source.from_bytes(_name(path), data), Diagnostics()
+        for _ in parse(source, diagnostics):
+            raise AssertionError("a program without text has no block")
+        for found in diagnostics:
+            print(render(found, source))
+        print(f"{source.name}: {diagnostics.closing}", file=sys.stderr)
+    raise typer.Exit(1 if sources else 0)
 
 
 def _codes(given: list[str] | None) -> tuple[str, ...]:
@@ -115,23 +140,22 @@ def programs_in(files: list[Path]) -> list[Path]:
 
 def read_bytes(path: Path) -> bytes:
     """The bytes of a program, `-` for standard input; raises UsageError."""
-    from nccompile.cli.queues import STDIN, is_queue
     from nccompile.errors import UsageError
 
     if path == STDIN:
         return sys.stdin.buffer.read()
-    if is_queue(path):
-        raise UsageError(f"{path} is an OutQueue, not a part program")
     try:
-        return path.read_bytes()
+        data = path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
+    if path.suffix.lower() == ".ncq" or data.startswith(ZIP):
+        raise UsageError(f"{path} is an OutQueue, not a part program")
+    return data
 
 
 def store(path: Path, data: bytes, new: bytes) -> None:
     """Writes a changed program back; that of standard input goes to standard output."""
     from nccompile.backend.files import replacing
-    from nccompile.cli.queues import STDIN
 
     if path == STDIN:
         sys.stdout.buffer.write(new)

@@ -57,10 +57,13 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
 
 
 def same_path(before: Sequence[Toolpath], after: Sequence[Toolpath], *, lines: bool = True) -> bool:
-    """Whether two toolpaths are the same to the bit; without `lines` their source lines may differ."""
-    return len(before) == len(after) and all(
-        _same(a, b, () if lines else ("line",)) for a, b in zip(before, after, strict=True)
-    )
+    """Whether two toolpaths are the same to the bit, however they are cut into chunks.
+
+    Without `lines` their source lines may differ.
+    """
+    if not (before and after):
+        return len(before) == len(after)
+    return _same(Toolpath.join(list(before)), Toolpath.join(list(after)), () if lines else ("line",))
 
 
 def _same(before: object, after: object, but: tuple[str, ...]) -> bool:

@@ -10,6 +10,7 @@ The analysis of a version that was edited meanwhile is given up at the next chun
 from __future__ import annotations
 
 import asyncio
+import gc
 import logging
 import time
 from collections.abc import Callable
@@ -29,6 +30,9 @@ LARGE = 3000
 
 PAUSE, LONG_PAUSE = 0.02, 0.2
 """Pause before the analysis of a small and of a large document [s]."""
+
+IDLE = 30.0
+"""Time without edits after which garbage is looked for [s]: among millions of words that takes a while."""
 
 _log = logging.getLogger(__name__)
 
@@ -73,6 +77,8 @@ class Session:
         self._works: dict[str, Work] = {}
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="analysis")
         self._said: set[str] = set()
+        self._idle: asyncio.TimerHandle | None = None
+        gc.disable()  # an analysis leaves next to no cycles; see IDLE
 
     def open(self, document: Document) -> None:
         """A document was opened, or opened again."""
@@ -91,6 +97,8 @@ class Session:
 
     def changed(self, document: Document) -> None:
         """A document has a new text or new settings: it is checked anew."""
+        if self._idle is not None:
+            self._idle.cancel()
         before = self._works.get(document.uri)
         if before is not None:
             before.drop()
@@ -148,6 +156,7 @@ class Session:
             analysis.times = times
             if work.wanted:
                 work.timed.set_result(analysis)
+                self._idle = loop.call_later(IDLE, gc.collect)
         except Cancelled:
             return
         except Exception:

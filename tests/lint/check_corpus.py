@@ -1,0 +1,84 @@
+"""Lints, fixes and formats every .nc program of folders, as the tests do with the samples.
+
+python -m tests.lint.check_corpus FOLDER..
+
+No program may have errors; `lint` must give what `compile` gives; all fixes, each rule's alone and all together,
+and the formatter must keep the toolpath to the bit and do nothing when run again.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+from nccompile.lint.config import Config
+from nccompile.lint.engine import lint
+from nccompile.lint.fix import apply_fixes
+from nccompile.lint.fmt import format_text, renumbered
+from nccompile.lint.pages import sheet_of
+from nccompile.lint.registry import RULES
+from nccompile.lint.rewrite import same_path
+from nccompile.source import Source
+from nccompile.toolchain import Compilation
+from nccompile.toolpath import Toolpath
+from tests.lint.programs import EVERY_RULE, OPTIONS, read
+from tests.lint.test_engine import compiled, linted
+
+FIXING = [rule.code for rule in RULES if sheet_of(rule).fix]
+
+
+def path_of(source: Source) -> list[Toolpath]:
+    return list(Compilation(source, OPTIONS).decoded())
+
+
+def mangled(text: str) -> str:
+    """The program with things to fix: small letters, tabs, blanks, repeated feeds."""
+    lines = text.split("\n")
+    for at in range(1, len(lines)):
+        line = lines[at]
+        if at % 5 == 0:
+            line = line.lower()
+        if at % 7 == 0:
+            line = line.replace(" ", "\t", 1) + "  "
+        if at % 11 == 0:
+            line = line.replace(" ", "\v", 1)
+        lines[at] = line
+    return "\n".join(lines)
+
+
+def check(source: Source) -> str:
+    assert linted(source) == compiled(source)
+    report = lint(source, OPTIONS, Config())
+    assert report.diagnostics.errors == 0
+    before = path_of(source)
+    odd = Source(source.name, mangled(source.text))
+    done = 0
+    for start in (source, odd):
+        for config in (EVERY_RULE, *(Config(select=(code,)) for code in FIXING)):
+            fixed = apply_fixes(start, OPTIONS, config)
+            assert same_path(before, path_of(Source(source.name, fixed.text)))
+            done += fixed.applied
+        laid_out = Source(source.name, format_text(start))
+        assert same_path(before, path_of(laid_out))
+        assert format_text(laid_out) == laid_out.text
+        assert same_path(before, path_of(renumbered(start, 7)))
+    found = ", ".join(f"{count} {code}" for code, count in sorted(report.diagnostics.counts.items()))
+    return f"{done} fixes kept the path; findings: {found or 'none'}"
+
+
+def main(folders: list[str]) -> int:
+    failed = 0
+    for path in sorted(p for folder in folders for p in Path(folder).glob("*.nc")):
+        begin = time.perf_counter()
+        try:
+            verdict = check(read(path))
+        except AssertionError as error:
+            failed += 1
+            verdict = f"FAILED {error}"
+        print(f"{path.name:24} {time.perf_counter() - begin:6.1f} s  {verdict}", flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
