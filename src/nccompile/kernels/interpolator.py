@@ -478,6 +478,16 @@ def _freeze(rows: Rows, inputs: Inputs, f: Floats, i: npt.NDArray[np.int64], tra
 
 
 @kernel
+def _may_leave(rows: Rows, inputs: Inputs, f: Floats, i: npt.NDArray[np.int64]) -> bool:
+    """Whether the next cycle may end the running row: not if its law goes on for longer, untouched by inputs."""
+    if i[RUNNING] == 0 or f[T1] + f[T2] + f[T3] - f[TAU] <= 2.0 * inputs.cycle or f[REST] > 0.0:
+        return True
+    if f[OVERRIDE] != inputs.override or i[LAW] != inputs.law or i[STOPPING] != inputs.stop:
+        return True
+    return inputs.single_step == 1 or rows.v_now[i[ROW]] > f[WANTED]
+
+
+@kernel
 def advance(
     rows: Rows, head: int, tail: int, settled: int, complete: int, inputs: Inputs, n: int,
     f: Floats, i: npt.NDArray[np.int64], nodes_u: Floats, nodes_s: Floats, trail: Floats, here: Floats,
@@ -503,11 +513,57 @@ def advance(
     f_before = f.copy()
     i_before = i.copy()
     here_before = here.copy()
+    plain = i[STARTED] == 1 and i[SMOOTH] == 0 and inputs.stop == GO and inputs.single_step == 0
     while done < n and reason == RAN:
         if 2 * logged > log.shape[0]:
             reason = LOG_FULL
             break
-        if patient:  # a cycle that runs into rows that are not settled is taken back
+        if plain and i[RUNNING] == 1 and i[STOPPING] == GO and i[HOLD] == 0 and i[STATUS] != IPO_FINISHED:
+            # The common cycle, on the way through a row: nothing to decide, no call that takes all rows.
+            row = i[ROW]
+            total = f[T1] + f[T2] + f[T3]
+            same = f[OVERRIDE] == inputs.override and i[LAW] == inputs.law and rows.v_now[row] <= f[WANTED]
+            if same and f[TAU] + inputs.cycle < total and rows.kind[row] < SET_POSITION and row < last:
+                f[TAU] += inputs.cycle
+                s = f[S0] + law_distance(i[LAW], f[TAU], f[T1], f[T2], f[T3], f[V0], f[VP], f[V1])
+                s = max(s, f[S])
+                s = min(s, rows.length[row])
+                velocity[done] = (s - f[S]) / inputs.cycle
+                f[S] = s
+                f[V] = law_velocity(i[LAW], f[TAU], f[T1], f[T2], f[T3], f[V0], f[VP], f[V1])
+                i[STATUS] = _phase(f)
+                curve = rows.curve[row]
+                bent = curve >= 0 and rows.kind[row] != ARC
+                if bent or rows.profile[row] != 0 or s >= rows.length[row]:
+                    locate(rows, row, s, nodes_u, nodes_s, i[NODES], here)
+                else:  # as `locate` does
+                    w = s / rows.length[row]
+                    for a in range(axes):
+                        begin = rows.start[row, a]
+                        here[a] = begin + (rows.target[row, a] - begin) * w
+                    if curve >= 0:
+                        p = rows.parameters[curve]
+                        angle = p[3] + p[4] * w
+                        cu = p[0] + p[2] * cos(angle)
+                        cv = p[1] + p[2] * sin(angle)
+                        plane = rows.plane[curve]
+                        if plane == 1:
+                            here[2] = cu
+                            here[0] = cv
+                        else:
+                            here[plane // 2] = cu
+                            here[plane // 2 + 1] = cv
+                if i[EVENT] < rows.event_end[row]:
+                    logged = _fire(rows, row, s, done, i, log, logged)
+                for a in range(axes):
+                    out[done, a] = here[a]
+                line[done] = i[LINE_NO]
+                status[done] = i[STATUS]
+                switches[done] = i[SWITCHES]
+                done += 1
+                continue
+        if patient and _may_leave(rows, inputs, f, i):
+            # a cycle that runs into rows that are not settled is taken back
             f_before[:] = f
             i_before[:] = i
             here_before[:] = here
