@@ -33,7 +33,7 @@ async function start(status) {
   } catch (error) {
     const [command] = vscode.workspace.getConfiguration("nccompile").get("command");
     vscode.window.showErrorMessage(
-      `${command} did not start: ${error.message}. Install it with pip install 'nccompile[lsp]', ` +
+      `${command} did not start: ${error?.message ?? "see the output"}. Install it with pip install 'nccompile[lsp]', ` +
         "or name it in the setting nccompile.command.",
     );
   }

@@ -1,113 +1,68 @@
-// The extension with a stand-in for the editor: what it starts is a server that answers over stdio.
+// The extension with vscode-languageclient and the real server over stdio, in Node with a stand-in for the editor.
 //
 // NCCOMPILE names the command if it is not on the path.
 "use strict";
 
 const assert = require("node:assert/strict");
-const { spawn } = require("node:child_process");
 const Module = require("node:module");
 const test = require("node:test");
-const rpc = require("vscode-languageserver-protocol/node");
+const { CancellationTokenSource, Document, Position, Range, standIn } = require("./support/vscode.js");
 
-const COMMAND = [process.env.NCCOMPILE || "nccompile", "lsp"];
-const made = { clients: [], commands: {}, messages: [], status: { text: "", show() {} } };
+const settings = { command: [process.env.NCCOMPILE || "nccompile", "lsp"] };
+const editor = standIn(settings);
 
-const vscode = {
-  workspace: { getConfiguration: () => ({ get: () => made.command || COMMAND }) },
-  window: {
-    createStatusBarItem: () => made.status,
-    showErrorMessage: (text) => made.messages.push(text),
-  },
-  commands: { registerCommand: (name, run) => (made.commands[name] = run) },
-  StatusBarAlignment: { Right: 2 },
-};
+const load = Module._load;
+Module._load = (name, ...rest) => (name === "vscode" ? editor.vscode : load(name, ...rest));
+const extension = require("../src/extension.js");
 
-// A client that speaks the protocol as vscode-languageclient does, without the editor's objects.
-class StandInClient {
-  constructor(id, name, server, options) {
-    Object.assign(this, { server, options, notified: {} });
-    made.clients.push(this);
-  }
+const token = () => new CancellationTokenSource().token;
 
-  onNotification(method, run) {
-    this.notified[method] = run;
-  }
-
-  async start() {
-    this.process = spawn(this.server.command, this.server.args, { stdio: ["pipe", "pipe", "inherit"] });
-    await new Promise((resolve, reject) => this.process.once("spawn", resolve).once("error", reject));
-    this.connection = rpc.createProtocolConnection(
-      new rpc.StreamMessageReader(this.process.stdout),
-      new rpc.StreamMessageWriter(this.process.stdin),
-    );
-    for (const [method, run] of Object.entries(this.notified)) {
-      this.connection.onNotification(method, run);
-    }
-    this.connection.listen();
-    const asked = { processId: process.pid, rootUri: null, capabilities: {} };
-    this.result = await this.connection.sendRequest(rpc.InitializeRequest.type, asked);
-    await this.connection.sendNotification(rpc.InitializedNotification.type, {});
-  }
-
-  needsStop() {
-    return this.connection !== undefined;
-  }
-
-  async stop() {
-    await this.connection.sendRequest(rpc.ShutdownRequest.type);
-    const ended = new Promise((resolve) => this.process.once("exit", resolve));
-    await this.connection.sendNotification(rpc.ExitNotification.type);
-    this.code = await ended;
-    this.connection.dispose();
+// Waits until the findings of a document are as wanted.
+async function findings(uri, wanted) {
+  for (;;) {
+    const found = (editor.diagnostics.get(uri) || []).map(({ code }) => code?.value ?? code);
+    if (wanted(found)) return found;
+    await new Promise((resolve) => editor.published.event(resolve));
   }
 }
 
-const load = Module._load;
-Module._load = (name, ...rest) => {
-  if (name === "vscode") return vscode;
-  if (name === "vscode-languageclient/node") return { LanguageClient: StandInClient };
-  return load(name, ...rest);
-};
-const extension = require("../src/extension.js");
-
-test("the extension starts a server, shows its findings and ends it", async () => {
-  const context = { subscriptions: [] };
-  await extension.activate(context);
-  const [client] = made.clients;
-  assert.deepEqual(made.messages, []);
-  assert.equal(client.result.serverInfo.name, "nccompile");
-  assert.deepEqual(
-    client.options.documentSelector.map(({ language }) => language),
-    ["din66025", "din66025"],
-  );
+test("findings, edits, hover, definition, hints and lenses", { timeout: 60_000 }, async () => {
+  await extension.activate({ subscriptions: [] });
+  assert.deepEqual(editor.messages, []);
 
   const uri = "untitled:Untitled-1";
-  const text = "% a\nN10 g1 X1 F20\n";
-  const published = new Promise((resolve) => {
-    client.connection.onNotification(rpc.PublishDiagnosticsNotification.type, resolve);
-  });
-  await client.connection.sendNotification(rpc.DidOpenTextDocumentNotification.type, {
-    textDocument: { uri, languageId: "din66025", version: 1, text },
-  });
-  const { diagnostics } = await published;
-  assert.deepEqual(diagnostics.map(({ code }) => code), ["NC054"]);
-  const hover = await client.connection.sendRequest(rpc.HoverRequest.type, {
-    textDocument: { uri },
-    position: { line: 1, character: 5 },
-  });
-  assert.match(hover.contents.value, /\*\*G1\*\*: line/);
-  assert.match(made.status.text, /^nccompile \d+ ms$/);
+  const document = new Document(uri, "% a\nN10 g1 X1 F20\nN20 G20 L10 K0\n");
+  editor.documents.push(document);
+  await editor.events.open.fire(document);
+  assert.deepEqual(await findings(uri, (codes) => codes.length > 0), ["NC054", "NC159"]);
 
-  await made.commands["nccompile.restart"]();
-  assert.equal(made.clients.length, 2);
-  assert.equal(client.code, 0);
-  await extension.deactivate();
-  assert.equal(made.clients[1].code, 0);
+  const hover = await editor.providers.Hover.provideHover(document, new Position(1, 5), token());
+  assert.match(JSON.stringify(hover), /\*\*G1\*\*: line/);
+  const [target] = await editor.providers.Definition.provideDefinition(document, new Position(2, 9), token());
+  assert.equal(target.range.start.line, 1);
+  const lenses = await editor.providers.CodeLens.provideCodeLenses(document, token());
+  assert.match(JSON.stringify(lenses), /1 segment · 1 mm · /);
+
+  document.text = document.text.replace("g1", "G1");
+  document.version = 2;
+  await editor.events.change.fire({
+    document,
+    contentChanges: [{ range: new Range(1, 4, 1, 6), rangeOffset: 8, rangeLength: 2, text: "G1" }],
+  });
+  assert.deepEqual(await findings(uri, (codes) => !codes.includes("NC054")), ["NC159"]);
 });
 
-test("a command that is not there is told, with what to do", async () => {
-  made.command = ["no-such-nccompile"];
+test("the time of the check is shown, and the server can be started again", { timeout: 60_000 }, async () => {
+  assert.match(editor.status.text, /^nccompile \d+ ms$/);
+  editor.diagnostics.clear();
+  await editor.commands["nccompile.restart"]();
+  assert.deepEqual(await findings("untitled:Untitled-1", (codes) => codes.length > 0), ["NC159"]);
+  await extension.deactivate();
+});
+
+test("a command that is not there is told, with what to do", { timeout: 60_000 }, async () => {
+  settings.command = ["no-such-nccompile"];
   await extension.activate({ subscriptions: [] });
-  assert.match(made.messages.at(-1), /no-such-nccompile did not start.*pip install 'nccompile\[lsp\]'/);
+  assert.match(editor.messages.join("\n"), /no-such-nccompile did not start.*pip install 'nccompile\[lsp\]'/);
   await extension.deactivate();
 });
