@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -64,8 +67,6 @@ def lint_programs(
     plain = form is Format.TEXT and machine is None and not (fix or statistics)
     if plain and all(not data.strip() for data in sources.values()):
         _say_empty(sources)
-    import gc
-
     from nccompile.cli.inputs import ProgramOptions, machine_of
     from nccompile.lint.config import Config, config_for
     from nccompile.lint.engine import lint
@@ -76,25 +77,36 @@ def lint_programs(
 
     settings = ProgramOptions(start, define, skip_blocks, max_jumps)
     reports = []
-    collecting = gc.isenabled()
-    gc.disable()  # millions of words without cycles: looking for some takes a third of the time
-    for path, data in sources.items():
-        config = (Config() if path == STDIN else config_for(path)).with_codes(selected, ignored)
-        options = settings.resolve(machine_of(machine if machine is not None else config.machine))
-        source = Source.from_bytes(_name(path), data)
-        if fix:
-            fixed = apply_fixes(source, options, config, limit)
-            store(path, data, encoding_of(data).encode(fixed.text))
-            if fixed.applied:
-                print(f"{path}: {fixed.applied} finding{'s' * (fixed.applied != 1)} fixed", file=sys.stderr)
-            reports.append(fixed.report)
-        else:
-            reports.append(lint(source, options, config, limit=limit))
-    if collecting:
-        gc.enable()
+    with _without_collection():
+        for path, data in sources.items():
+            config = (Config() if path == STDIN else config_for(path)).with_codes(selected, ignored)
+            options = settings.resolve(machine_of(machine if machine is not None else config.machine))
+            source = Source.from_bytes(_name(path), data)
+            if fix:
+                fixed = apply_fixes(source, options, config, limit)
+                store(path, data, encoding_of(data).encode(fixed.text))
+                if fixed.applied:
+                    print(
+                        f"{path}: {fixed.applied} finding{'s' * (fixed.applied != 1)} fixed", file=sys.stderr
+                    )
+                reports.append(fixed.report)
+            else:
+                reports.append(lint(source, options, config, limit=limit))
     out = sys.stderr if fix and STDIN in files else sys.stdout
     out.write(_statistics(reports) if statistics else FORMATS[form](reports))
     _close(reports, strict)
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """No garbage collection: millions of words without cycles, looking for some takes a third of the time."""
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
 
 
 def _name(path: Path) -> str:
