@@ -54,6 +54,37 @@ def test_random_programs(data: bytes, part: int, chunk: int) -> None:
     compare(data, part, chunk=chunk)
 
 
+_JUMPS = [
+    "G36 O$i$ D{n}",
+    "G37 O$i$ D-1",
+    "G20 L{n} K$i$",
+    "G20 L{n}",
+    "N{n} G1 X{a}",
+    "N{n} X$i$",
+    "N{n}",
+    "(note)",
+    "G37 D-1",
+    "G36 D3",
+]
+
+
+@st.composite
+def jumping(draw: st.DrawFn) -> str:
+    shape = draw(st.sampled_from(_JUMPS))
+    return shape.format(a=draw(_PLACES), n=draw(st.integers(1, 12)))
+
+
+@settings(max_examples=300, deadline=None)
+@given(
+    st.lists(st.one_of(jumping(), blocks()), max_size=40),
+    st.sampled_from([1, 17, 1 << 20]),
+    st.sampled_from([1, 5, 4096]),
+)
+def test_programs_with_jumps(rows: list[str], part: int, chunk: int) -> None:
+    program = "\n".join(["% p", "G1 F10", "N10 G36 O$i$ D5", *rows, "N20 G37 O$i$ D-1", "G20 L10 K$i$"])
+    compare(program.encode(), part, chunk=chunk, max_jumps=30, max_blocks=200)
+
+
 @settings(max_examples=60, deadline=None)
 @given(PROGRAMS, st.booleans(), st.sampled_from([{}, {"X": 5.0, "P": 1.0}]))
 def test_options(data: bytes, skip: bool, start: dict[str, float]) -> None:

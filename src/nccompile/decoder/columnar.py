@@ -41,8 +41,8 @@ class Runs:
         self._left = 0
         self._leave = 0
 
-    def run(self, table: Table, block: int) -> int:
-        """Decodes blocks from `block` on; returns the first that must be decoded as a statement."""
+    def run(self, table: Table, block: int, most: int | None = None) -> int:
+        """Decodes blocks from `block` on, at most `most`; returns the first that must be decoded as a statement."""
         if self._left:
             self._left -= 1
             return block
@@ -50,8 +50,9 @@ class Runs:
             return block
         self._enter()
         c = self._core.path.columns
+        end = table.blocks if most is None else min(table.blocks, block + most)
         stop = kernels.decode(
-            block, table.blocks, table.block_line, table.block_word, table.plain, table.letter, table.value,
+            block, end, table.block_line, table.block_word, table.plain, table.letter, table.value,
             self._column, self._axis_bits, LIMIT, *TOLERANCES,
             self._numbers, self._flags, self._position, self._goal, self._arc,
             c.kind, c.target, c.curve, c.length, c.feed, c.accel, c.decel, c.radius, c.line, c.plane, c.parameters,

@@ -11,6 +11,7 @@ from nccompile.decoder.core import Core
 from nccompile.decoder.flow import Flow
 from nccompile.decoder.motion import Motion
 from nccompile.decoder.options import DecodeOptions
+from nccompile.decoder.program import Listed, Scanned
 from nccompile.decoder.tables import Group
 from nccompile.decoder.variables import INT_MAX, INT_MIN
 from nccompile.decoder.words import Statement, evaluate, set_modal
@@ -62,19 +63,26 @@ class Din66025:
             found = survey(source, ADDITIONAL)
             jumps, self._control = found.jumps, found.control
             self.axes = _axes(found.letters, options)
-            self._stream = None if jumps or options.ignore else source
+            self._stream = None if options.ignore else source
         else:
             jumps = _JUMP.search(source.text) is not None
             self.axes = axes_of(source.text, options)
         self._core = Core(source, self.axes, options, diagnostics, jumps)
         self._jumps = jumps
-        self._flow = Flow(self._core, parse(source, diagnostics), jumps)
+        self._flow: Flow | None = None
         self._motion = Motion(self._core)
         self._skip = options.skip_blocks
 
     def chunks(self) -> Iterator[Toolpath]:
         """The toolpath, in chunks whose borders are the only thing that depends on their size."""
-        yield from self._statements() if self._stream is None else self._columns(self._stream)
+        if self._stream is None:
+            yield from self._statements()
+        elif self._control >= 0:
+            report_control(self._stream, self._diagnostics, self._control)
+        elif self._jumps:
+            yield from self._jumping_columns(self._stream)
+        else:
+            yield from self._columns(self._stream)
         self._motion.spline.close(None)
         self._core.flush_position()
         self._motion.marks.finish()
@@ -82,15 +90,38 @@ class Din66025:
 
     def _statements(self) -> Iterator[Toolpath]:
         path = self._core.path
-        for block in self._flow:
+        for block in self._in_order():
             self._take(block)
             if path.is_full:
                 yield from path.ready()
 
-    def _columns(self, source: LargeSource) -> Iterator[Toolpath]:
-        if self._control >= 0:
-            report_control(source, self._diagnostics, self._control)
+    def _in_order(self) -> Iterator[Block]:
+        """The blocks as they run; all are kept in memory only if there are jumps."""
+        blocks = parse(self._source, self._diagnostics)
+        if not self._jumps:
+            yield from blocks
             return
+        self._flow = Flow(self._core, Listed(blocks))
+        while (block := self._flow.next()) is not None:
+            yield block
+
+    def _jumping_columns(self, source: LargeSource) -> Iterator[Toolpath]:
+        path, runs = self._core.path, Runs(self._core, self._motion)
+        program = Scanned(tables(source), Reader(source, self._diagnostics))
+        flow = self._flow = Flow(self._core, program)
+        while not flow.has_ended:
+            table, row = program.place(flow.at)
+            stop = runs.run(table, row, flow.left)
+            flow.skip(stop - row)
+            out_of_room = path.rows == path.room
+            if path.is_full:
+                yield from path.ready()
+            if stop < table.blocks and not out_of_room:
+                block = flow.next()
+                if block is not None:
+                    self._take(block)
+
+    def _columns(self, source: LargeSource) -> Iterator[Toolpath]:
         reader = Reader(source, self._diagnostics)
         runs = Runs(self._core, self._motion)
         with closing(ahead(tables(source))) as stream:
@@ -249,4 +280,5 @@ class Din66025:
             )
             return
         condition = values.get("K", self._core.variables.implicit)
+        assert self._flow is not None  # the text has a G20
         self._flow.jump(int(number), condition != 0.0, statement.block, statement.place("L"))

@@ -78,6 +78,16 @@ class Table:
             end += 1
         return float(self.data[begin:end])
 
+    def shorten(self, blocks: list[int]) -> None:
+        """Leaves out all blocks but these, of the others only such without words, and gives back unused memory."""
+        ends = self.block_word[np.array([*(b + 1 for b in blocks)], np.intp)]
+        self.block_word = np.concatenate([np.zeros(1, np.int32), ends])
+        for name in ("block_line", "block_begin", "block_end", "plain"):
+            setattr(self, name, getattr(self, name)[blocks])
+        self.blocks, self.words = len(blocks), int(self.block_word[-1])
+        for name in ("letter", "value", "place"):
+            setattr(self, name, getattr(self, name)[: self.words].copy())
+
     def text(self, block: int) -> str:
         """The line of a block."""
         return self.source.decode(self.data[int(self.block_begin[block]) : int(self.block_end[block])])
