@@ -16,6 +16,7 @@ from math import radians
 
 import numpy as np
 
+from nccompile.kernels import expect_work
 from nccompile.kernels import reach as kernels
 from nccompile.kernels.curves import NODES
 from nccompile.passes.velocity.limits import limited
@@ -27,6 +28,9 @@ __all__ = ["fastest"]
 
 _TURN = radians(2.0)
 """Greatest turn of a part: between its ends an arc exceeds a limit by at most turn² / 8 = 1.5e-4."""
+
+_WORK = 20
+"""What an interval of a curve costs, in the units of `expect_work`: rows of a plain plan."""
 
 _SHARE_V = 0.9997
 """The same for velocities."""
@@ -81,6 +85,7 @@ class _Stage:
         cap = _caps(path, grid, self.settings.limits.velocity)
         a_axis = _SHARE * self.settings.limits.acceleration[:3]
         bound = path.accel[grid.parts.row]
+        expect_work(_WORK * int(grid.curved.sum()))
         x = np.empty(len(bound))
         known_intervals = int(np.searchsorted(grid.parts.row, known))
         settled = kernels.backward(
