@@ -3,6 +3,7 @@
 # make check   format, lint, types, layering and the tests
 # make bench   the benchmarks
 # make docs     writes the pages of the diagnostic codes anew
+# make vscode   tests the VS Code extension and makes its .vsix; needs Node 20 and npm
 # make accept  rewrites the golden files; read the difference before committing it
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3 || echo python)
@@ -11,7 +12,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 INPUTS := pyproject.toml README.md
 
-.PHONY: demo test check lint bench docs accept clean
+.PHONY: demo test check lint bench docs vscode accept clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/.installed
@@ -34,6 +35,9 @@ bench: $(VENV)/.installed-dev
 docs: $(VENV)/.installed-dev
 	$(BIN)/python -m tools.rule_pages
 	$(BIN)/python -m tools.textmate
+
+vscode: $(VENV)/.installed-dev
+	cd editors/vscode && npm ci && NCCOMPILE=$(abspath $(BIN))/nccompile npm test && npm run package
 
 accept: $(VENV)/.installed-dev
 	NCCOMPILE_ACCEPT=1 $(BIN)/python -m pytest tests/golden
