@@ -9,9 +9,10 @@
                                       spans are needed, at places where they all have the same error: knots
     are spread by that density and the spline is solved again, until the tolerance holds, then with fewer.
 
-The error of a chord: its two vertices are e0, e1 off the spline (after one step to the nearest place), and
-between them the spline leaves the chord by at most |chord|² / 8 max|S''| more; so max(e0, e1) + sag bounds the
-distance of chord and spline piece both ways.
+The chords of a run lie inside the curve that they stand for, so the vertices are moved inwards by half the sag
+before the fit: the spline then runs in the middle of the band.  Errors are measured from the chords as they are:
+at every vertex (after one step to the nearest place), at the middle of every chord and with a bound between
+them, so they bound the distance of chord and spline both ways.
 
 Source:   C. de Boor, A Practical Guide to Splines, 1978, chapters X, XII (knots by equal error), XIV.
 """
@@ -30,7 +31,6 @@ Floats = npt.NDArray[np.float64]
 _ROUNDS = 12
 _FLOOR = 1e-3  # part of the tolerance below which an error says nothing of the span it needs
 _SMOOTH = 1e-10  # weight of second differences of the coefficients: a span without vertices is still defined
-_DENSE = 2  # spans a vertex: more would only follow rounding
 
 
 @kernel
@@ -161,11 +161,12 @@ def _pieces(t: Floats, spans: int, control: Floats, rows: Floats) -> None:
 
 @kernel
 def _errors(
-    points: Floats, tau: Floats, t: Floats, spans: int, rows: Floats, errors: Floats, needs: Floats, shifted: Floats
+    points: Floats, tau: Floats, t: Floats, spans: int, rows: Floats, errors: Floats, needs: Floats
 ) -> float:  # fmt: skip
     """Fills the error bound of each span [mm] (see the module) and how many spans it should be.
 
-    shifted: Shape of tau, the places of the spline nearest to the data;  returns the greatest error.
+    Between the vertices of a chord, at e0 and e1 off the spline, its middle is (e0 + e1) / 2 + |chord|² / 8 S''
+    off; between these three places a quarter of the sag may come on top.  Returns the greatest error.
     """
     last = len(tau) - 1
     for j in range(spans):
@@ -177,6 +178,8 @@ def _errors(
     bend_before = 0.0
     vx = vy = vz = 0.0
     ex = ey = ez = 0.0
+    wx = wy = wz = 0.0
+    bx = by = bz = 0.0
     for i in range(last + 1):
         x = float(tau[i])
         while span < spans - 1 and x > t[span + 4]:
@@ -208,20 +211,29 @@ def _errors(
             ex -= step * sx
             ey -= step * sy
             ez -= step * sz
-        shifted[i] = x + step
         off = sqrt(ex * ex + ey * ey + ez * ez) + 0.5 * bend * step * step
         if i > 0:
             size = x - float(tau[i - 1])
-            bump = 0.125 * size * size * max(bend, bend_before)
-            apart = sqrt((ex - vx) * (ex - vx) + (ey - vy) * (ey - vy) + (ez - vz) * (ez - vz))
-            bound = max(off, before)
-            if 4.0 * bump > apart:
-                bound += bump + apart * apart / (16.0 * bump) - 0.5 * apart
+            sag = 0.0625 * size * size  # of the mean of both second derivatives
+            mx = 0.5 * (ex + vx) + sag * (bx + wx)
+            my = 0.5 * (ey + vy) + sag * (by + wy)
+            mz = 0.5 * (ez + vz) + sag * (bz + wz)
+            middle = sqrt(mx * mx + my * my + mz * mz)
+            bump = 0.5 * sag * max(bend, bend_before)  # of each half
+            bound = max(off, before, middle)
+            for half in range(2):
+                ax = ex - mx if half == 0 else vx - mx
+                ay = ey - my if half == 0 else vy - my
+                az = ez - mz if half == 0 else vz - mz
+                apart = sqrt(ax * ax + ay * ay + az * az)
+                if 4.0 * bump > apart:
+                    most = max(middle, off if half == 0 else before)
+                    bound = max(bound, most + bump + apart * apart / (16.0 * bump) - 0.5 * apart)
             worst = max(worst, bound)
             j = span
             while True:
                 errors[j] = max(float(errors[j]), bound)
-                needs[j] = max(float(needs[j]), 2.0 * bump)
+                needs[j] = max(float(needs[j]), sag * max(bend, bend_before))
                 if j == 0 or t[j + 3] <= tau[i - 1]:
                     break
                 j -= 1
@@ -230,6 +242,9 @@ def _errors(
         vx = ex
         vy = ey
         vz = ez
+        wx = bx
+        wy = by
+        wz = bz
     return worst
 
 
@@ -306,20 +321,18 @@ def _spread(knots: Floats, spans: int, needs: Floats, total: float, wanted: int,
 
 @kernel
 def fit_spline(
-    points: Floats, tau: Floats, tolerance: float, knots: Floats, rows: Floats, most: int
+    points: Floats, data: Floats, tau: Floats, tolerance: float, knots: Floats, rows: Floats, most: int
 ) -> int:  # fmt: skip
     """The number of cubics, with few of them, that keep the tolerance along a run; 0 if none was found.
 
-    Args:     points: Shape (m, >= 3), vertices and middles of the chords in turn, and additional axes;
-              tau: Shape (m,), way along the chords, ascending from 0; moved to the nearest places of the spline;
-              most: greatest number of pieces;
-              knots: Shape (most + 1,), out: in the moved tau;  rows: Shape (most, 12), out: coefficients over
-              the share 0..1 of each span, four a coordinate.
+    Args:     points: Shape (n + 1, >= 3), vertices and additional axes;  data: Shape (n + 1, 3), what the
+              spline is fitted to: the vertices, moved half the sag of their chords;  tau: Shape (n + 1,), way
+              along the chords, ascending from 0;  most: greatest number of pieces;
+              knots: Shape (most + 1,), out;  rows: Shape (most, 12), out: coefficients over the share 0..1 of
+              each span, four a coordinate.
     """
     cap = most + 8
     last = len(tau) - 1
-    shifted = np.zeros(last + 1)
-    kept = np.zeros(last + 1)
     t = np.zeros(cap)
     band = np.zeros((cap, 4))
     right = np.zeros((cap, 3))
@@ -328,18 +341,18 @@ def fit_spline(
     trial = np.zeros((cap, 12))
     now = np.zeros(cap)
     fresh = np.zeros(cap)
-    spans = min(max(last // 48, 1), most)
+    spans = min(max(last // 24, 1), most)
     for i in range(spans + 1):
         now[i] = float(tau[last]) * i / spans
     found = 0
     failed = 0
     for _ in range(_ROUNDS):
         _pad(now, spans, t)
-        _assemble(points, tau, t, spans, band, right)
-        if not _solve(points, spans, band, right):
+        _assemble(data, tau, t, spans, band, right)
+        if not _solve(data, spans, band, right):
             break
         _pieces(t, spans, right, trial)
-        worst = _errors(points, tau, t, spans, trial, errors, needs, shifted)
+        worst = _errors(points, tau, t, spans, trial, errors, needs)
         worst = max(worst, _axes(points, tau, t, spans, errors))
         total = _density(errors, needs, spans, tolerance)
         if worst <= tolerance:
@@ -350,8 +363,6 @@ def fit_spline(
             for j in range(spans):
                 for c in range(12):
                     rows[j, c] = trial[j, c]
-            for i in range(last + 1):
-                kept[i] = tau[i]
             wanted = min(int(total) + 1, spans - 1 - spans // 64)
         else:
             failed += 1
@@ -363,17 +374,10 @@ def fit_spline(
                 wanted = max(int(total * (1.0 + 0.02 * failed)) + 1, spans + (0 if failed < 4 else 1))
         if wanted > most or wanted < 1:
             break
-        for i in range(1, last):
-            low = float(tau[i - 1])
-            room = 0.1 * (float(tau[i + 1]) - low)
-            tau[i] = min(max(float(shifted[i]), low + room), float(tau[i + 1]) - room)
         _spread(now, spans, needs, total, wanted, fresh)
         spans = wanted
         for i in range(spans + 1):
             now[i] = fresh[i]
-    for i in range(last + 1):
-        if found > 0:
-            tau[i] = kept[i]
     for j in range(found):
         h = float(knots[j + 1] - knots[j])
         for c in range(3):

@@ -27,6 +27,9 @@ from nccompile.units import rad_from_deg
 
 __all__ = ["FitSplines"]
 
+_SAG = 16.0
+"""Second difference of the vertices / half the sag of their chords, for chords of equal length."""
+
 
 @dataclass(frozen=True)
 class FitSplines(Pass):
@@ -76,14 +79,14 @@ class FitSplines(Pass):
         n = last - first
         origin = path.start if first == 0 else path.target[first - 1]
         vertices = np.vstack([origin[None, :], path.target[first:last]])
-        points = np.empty((2 * n + 1, vertices.shape[1]))
-        points[::2] = vertices - origin
-        points[1::2] = 0.5 * (points[:-1:2] + points[2::2])
+        points = vertices - origin
+        data = points[:, :3].copy()
+        data[1:-1] += (points[:-2, :3] - 2.0 * points[1:-1, :3] + points[2:, :3]) / _SAG
         steps = np.diff(points[:, :3], axis=0)
         tau = np.concatenate([[0.0], np.cumsum(np.sqrt((steps * steps).sum(axis=1)))])
         most = max(n // 2, 1)
         knots, rows = np.zeros(most + 1), np.zeros((most, CURVE_PARAMETERS))
-        count = kernels.fit_spline(points, tau, self.tolerance, knots, rows, most)
+        count = kernels.fit_spline(points, data, tau, self.tolerance, knots, rows, most)
         if count == 0 or count >= n:
             return None
         flat = bool(np.all(vertices[:, 2] == origin[2]))
@@ -92,8 +95,8 @@ class FitSplines(Pass):
         rows[:, [0, 4, 8]] += origin[:3]
         if flat:
             rows[:, 8:] = 0.0
-        row = np.minimum(np.searchsorted(tau[2::2], knots[1 : count + 1]), n - 1)
-        part = (knots[1 : count + 1] - tau[2 * row]) / (tau[2 * row + 2] - tau[2 * row])
+        row = np.minimum(np.searchsorted(tau[1:], knots[1 : count + 1]), n - 1)
+        part = (knots[1 : count + 1] - tau[row]) / (tau[row + 1] - tau[row])
         row[-1], part[-1] = n - 1, 1.0
         plane = np.full(count, int(Plane.XY if flat else Plane.SPACE))
         return Pieces(
