@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
 from nccompile.diagnostics import Diagnostic, Severity
 from nccompile.lsp.analysis import Analysis
-from nccompile.lsp.text import Change, Place, Text
+from nccompile.lsp.text import Change, Place, Text, joined
 from nccompile.parser import Block, Header, ReadSource, read_line
 from nccompile.parser.lines import Node, Unread, placed, placed_block
 from nccompile.source import Span
 
-__all__ = ["Document", "path_of"]
+__all__ = ["Document", "Snapshot", "path_of"]
 
 
 def path_of(uri: str) -> Path | None:
@@ -90,8 +91,26 @@ class Document:
             node = self.nodes[line] = placed(node, line + 1)
         return node
 
+    def snapshot(self) -> Snapshot:
+        """The lines and nodes as they are; copies, so that edits do not reach them."""
+        return Snapshot(self.name, list(self.text.lines), list(self.text.ends), list(self.nodes))
+
     def source(self) -> ReadSource:
-        """The text with its nodes, all in their places; a copy, so that edits do not reach it."""
+        """The text with its nodes, all in their places."""
+        return self.snapshot().source()
+
+
+class Snapshot(NamedTuple):
+    """A document at one moment."""
+
+    name: str
+    lines: list[str]
+    ends: list[str]
+    nodes: list[Node]
+
+    def source(self) -> ReadSource:
+        """The text with its nodes; those behind inserted or removed lines are put in their places, which takes a
+        while in a long document: a thread may do it."""
         nodes = self.nodes
         for at, node in enumerate(nodes, 1):
             if node is None:
@@ -101,4 +120,4 @@ class Document:
                     nodes[at - 1] = Unread(node.fault, placed_block(node.block, at))
             elif node.line != at:
                 nodes[at - 1] = placed(node, at)
-        return ReadSource(self.name, str(self.text), nodes=list(nodes))
+        return ReadSource(self.name, joined(self.lines, self.ends), nodes=nodes)

@@ -20,7 +20,7 @@ from nccompile.errors import NccompileError
 from nccompile.lint.config import Config, config_for
 from nccompile.lint.program import Cancelled
 from nccompile.lsp.analysis import Analysis, Settings, Times, analyse, timed
-from nccompile.lsp.document import Document
+from nccompile.lsp.document import Document, Snapshot
 from nccompile.machine.model import default_machine, load
 
 __all__ = ["Outdated", "Session", "Work"]
@@ -61,6 +61,10 @@ class Work:
         self.wanted = False
         for future in (self.checked, self.timed):
             future.cancel()
+
+
+def _analysed(snapshot: Snapshot, work: Work, settings: Settings) -> Analysis:
+    return analyse(snapshot.source(), work.version, settings, work.is_wanted)
 
 
 class Session:
@@ -140,14 +144,13 @@ class Session:
             return
         loop = asyncio.get_running_loop()
         begun = time.perf_counter()
-        source, settings = document.source(), self._settings(document)
+        snapshot, settings = document.snapshot(), self._settings(document)
         try:
-            analysis = await loop.run_in_executor(
-                self._pool, analyse, source, work.version, settings, work.is_wanted
-            )
+            analysis = await loop.run_in_executor(self._pool, _analysed, snapshot, work, settings)
             if not work.wanted:
                 return
             document.analysis = analysis
+            document.nodes = list(snapshot.nodes)
             document.shown = analysis.report.ordered()
             self._publish(document, True)
             self._done(document, time.perf_counter() - begun)

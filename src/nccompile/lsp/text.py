@@ -12,7 +12,7 @@ from collections.abc import Callable
 from nccompile.lint.base import Edit
 from nccompile.source import Span
 
-__all__ = ["Change", "Place", "Text", "split"]
+__all__ = ["Change", "Place", "Text", "joined", "split"]
 
 Place = tuple[int, int]
 """Line and character of the protocol, both from 0."""
@@ -26,6 +26,11 @@ _END = re.compile(r"\r\n|\r|\n")
 def split(text: str) -> tuple[list[str], list[str]]:
     """The lines and, one fewer, the line ends between them."""
     return _END.split(text), _END.findall(text)
+
+
+def joined(lines: list[str], ends: list[str]) -> str:
+    """The text of lines and the ends between them."""
+    return "".join([line + end for line, end in zip(lines, ends, strict=False)]) + lines[-1]
 
 
 def _utf8(character: str) -> int:
@@ -48,8 +53,7 @@ class Text:
         self._units = _UNITS[encoding]
 
     def __str__(self) -> str:
-        parts = [line + end for line, end in zip(self.lines, self.ends, strict=False)]
-        return "".join(parts) + self.lines[-1]
+        return joined(self.lines, self.ends)
 
     def replace_all(self, text: str) -> Change:
         """Takes a whole new text."""
