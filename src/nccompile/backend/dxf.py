@@ -1,7 +1,8 @@
 """Toolpaths as DXF drawings, to be looked at in a CAD program or imported again.
 
-Every segment becomes the entity that is exactly it: LINE, ARC or CIRCLE, ELLIPSE, SPLINE, in three dimensions
-where Z moves.  Layers say what a segment is; a suffix says which stage it is from.
+Lines and arcs at one height become polylines, a contour one of them, so that it stays in one piece; other
+segments become the entity that is exactly them: LINE (in three dimensions where Z moves), CIRCLE, ELLIPSE,
+SPLINE.  Layers say what a segment is; a suffix says which stage it is from.
 
     NC_FEED      feed moves                    NC_RAPID     positionings (import-dxf leaves them out)
     NC_SWITCH    switch points, M functions and dwells as points (not plotted)
@@ -13,7 +14,7 @@ climbs.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import ceil, degrees, pi
+from math import ceil, degrees, pi, tan
 from typing import Any, TextIO
 
 import numpy as np
@@ -54,17 +55,21 @@ class DxfExport:
         for name, color in COLORS.items():
             layer = self._doc.layers.add(name + suffix, color=color)
             layer.dxf.plot = int(name == "NC_FEED")
-        space, count = self._doc.modelspace(), 0
+        space = self._doc.modelspace()
+        before = len(space)
+        run = _Run(space)
         for chunk in chunks:
             starts = chunk.starts()
             marked = set(chunk.events.segment.tolist())
             for i, kind in enumerate(chunk.kind.tolist()):
                 layer_name = ("NC_RAPID" if kind == Kind.POSITIONING else "NC_FEED") + suffix
-                if kind <= Kind.POLYNOMIAL:
-                    count += self._segment(space, chunk, i, kind, starts[i], {"layer": layer_name})
+                if kind <= Kind.POLYNOMIAL and not run.takes(chunk, i, kind, starts[i], layer_name):
+                    run.end()
+                    self._segment(space, chunk, i, kind, starts[i], {"layer": layer_name})
                 if i in marked:
-                    count += self._events(space, chunk, i, starts[i], {"layer": "NC_SWITCH" + suffix})
-        return count
+                    self._events(space, chunk, i, starts[i], {"layer": "NC_SWITCH" + suffix})
+        run.end()
+        return len(space) - before
 
     def write(self, file: TextIO) -> None:
         """Writes the drawing as text."""
@@ -72,13 +77,13 @@ class DxfExport:
 
     def _segment(
         self, space: Any, chunk: Toolpath, i: int, kind: int, start: Floats, attributes: dict[str, Any]
-    ) -> int:
+    ) -> None:
+        """A segment that no polyline holds."""
         a, b = start[:3], chunk.target[i][:3]
         if chunk.curve[i] < 0:
-            if np.array_equal(a, b):
-                return 0
-            space.add_line(tuple(a), tuple(b), attributes)
-            return 1
+            if not np.array_equal(a, b):
+                space.add_line(tuple(a), tuple(b), attributes)
+            return
         row = chunk.curves.parameters[chunk.curve[i]]
         plane = Plane(int(chunk.curves.plane[chunk.curve[i]]))
         if plane is not Plane.XY or a[2] != b[2]:
@@ -91,7 +96,6 @@ class DxfExport:
             _ellipse(space, row, float(a[2]), attributes)
         else:
             _cubic(space, row, float(a[2]), attributes)
-        return 1
 
     def _points(self, kind: int, plane: Plane, row: Floats, a: Floats, b: Floats) -> Floats:
         """Shape (n, 3): a curve as a polyline; the axis its plane leaves over goes along evenly."""
@@ -109,7 +113,7 @@ class DxfExport:
         points[:, first], points[:, second] = curve[:, 0], curve[:, 1]
         return points
 
-    def _events(self, space: Any, chunk: Toolpath, i: int, start: Floats, attributes: dict[str, Any]) -> int:
+    def _events(self, space: Any, chunk: Toolpath, i: int, start: Floats, attributes: dict[str, Any]) -> None:
         rows = np.flatnonzero(chunk.events.segment == i)
         for e in rows.tolist():
             share = float(chunk.events.position[e])
@@ -120,7 +124,48 @@ class DxfExport:
                                      start[:3], chunk.target[i][:3])  # fmt: skip
                 place = curve[round(share * (len(curve) - 1))]
             space.add_point(tuple(place), attributes)
-        return len(rows)
+
+
+class _Run:
+    """Feed moves in lines and arcs at one height that follow each other: one polyline."""
+
+    def __init__(self, space: Any) -> None:
+        self._space = space
+        self._points: list[tuple[float, float, float]] = []
+        self._layer = ""
+        self._height = 0.0
+        self._last = (0.0, 0.0)
+
+    def takes(self, chunk: Toolpath, i: int, kind: int, start: Floats, layer: str) -> bool:
+        """Adds a segment if it is a line or an arc, not a full circle, at the height of the run."""
+        target = chunk.target[i]
+        row = None if chunk.curve[i] < 0 else chunk.curves.parameters[chunk.curve[i]]
+        sweep = 0.0 if row is None else float(row[4])
+        flat = kind in {Kind.LINE, Kind.ARC} and start[2] == target[2] and abs(sweep) < FULL
+        if row is not None:
+            flat = flat and chunk.curves.plane[chunk.curve[i]] == Plane.XY
+        if not flat or np.array_equal(start[:2], target[:2]):
+            return False
+        if self._points and (layer, float(start[2])) != (self._layer, self._height):
+            self.end()
+        self._layer, self._height = layer, float(start[2])
+        self._points.append((float(start[0]), float(start[1]), tan(sweep / 4)))
+        self._last = (float(target[0]), float(target[1]))
+        return True
+
+    def end(self) -> None:
+        """Draws what was gathered: a LINE if it is one, else a polyline, closed if it ends where it began."""
+        points, self._points = self._points, []
+        if not points:
+            return
+        attributes = {"layer": self._layer, "elevation": self._height}
+        if len(points) == 1 and points[0][2] == 0.0:
+            ends = [(x, y, self._height) for x, y in (points[0][:2], self._last)]
+            self._space.add_line(*ends, {"layer": self._layer})
+            return
+        closed = points[0][:2] == self._last
+        everything = points if closed else [*points, (*self._last, 0.0)]
+        self._space.add_lwpolyline(everything, format="xyb", close=closed, dxfattribs=attributes)
 
 
 def _arc(space: Any, row: Floats, z: float, attributes: dict[str, Any]) -> None:

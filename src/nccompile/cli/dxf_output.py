@@ -35,6 +35,8 @@ __all__ = ["Import", "run"]
 LONG = 1_000_000
 """Size [bytes] of drawings that get a progress display."""
 
+PICTURES = (".png", ".svg", ".pdf")
+
 Say = Callable[[str], None]
 
 
@@ -58,11 +60,15 @@ class Import:
 def run(wanted: Import, job: Job, reading: ReadOptions, converting: ConvertOptions, form: Report) -> None:
     """Imports the drawing; no program is left behind if there are errors."""
     found = Diagnostics()
+    if wanted.preview is not None and wanted.preview.suffix.lower() not in PICTURES:
+        raise UsageError(f"{wanted.preview}: pictures are written as {', '.join(PICTURES)}")
     if not wanted.drawing.is_file():
         what = "is not a file" if wanted.drawing.exists() else "is not there"
         raise UsageError(f"{wanted.drawing} {what}")
     with _progress(wanted.drawing) as say:
-        drawing = read_drawing(wanted.drawing, reading, found, lambda count: say(f"reading: {count} entities"))
+        drawing = read_drawing(
+            wanted.drawing, reading, found, lambda count: say(f"reading: {count} entities")
+        )
         result = Result()
         if drawing is not None:
             say("joining and ordering")
@@ -150,8 +156,6 @@ def _write_queue(wanted: Import, program: NamedProgram, found: Diagnostics) -> N
 def _draw(place: Path, wanted: Import, result: Result) -> None:
     from nccompile.view.dxf_preview import save_preview
 
-    if place.suffix.lower() not in {".png", ".svg", ".pdf"}:
-        raise UsageError(f"{place}: pictures are written as .png, .svg, .pdf")
     chunks = [chunk for program in result.programs for chunk in program.moves.chunks()]
     starts = [complex(z) for paths in result.paths for z in paths.pieces.start[paths.first[:-1]]]
     title = f"{wanted.drawing.name}: {len(starts)} paths, rapids {result.rapids:.1f} mm"
@@ -187,7 +191,13 @@ def _write_report(wanted: Import, drawing: Drawing | None, result: Result, found
             "hidden_layers": {name: {"why": why, "entities": n} for name, (why, n) in drawing.hidden.items()},
             "layers": {name: {"paths": n, "length": length} for name, (n, length) in result.layers.items()},
             "places": [
-                {"code": p.code, "X": p.at.real, "Y": p.at.imag, "size": p.size, "layer": drawing.layers[p.layer]}
+                {
+                    "code": p.code,
+                    "X": p.at.real,
+                    "Y": p.at.imag,
+                    "size": p.size,
+                    "layer": drawing.layers[p.layer],
+                }
                 for p in result.places
             ],
             "programs": [str(wanted.place(program)) for program in result.programs],

@@ -69,9 +69,7 @@ def nest(paths: Paths) -> Nesting:
     pairs = (ring[outside] != inside) & (size[ring[outside]] > size[inside])
     inside, outside = inside[pairs], outside[pairs]
     shapely.prepare(polygons)
-    probes = np.array(
-        [z[np.linspace(0, len(z) - 1, 7).astype(int)[1:-1]] if len(z) > 8 else _spread(z) for z in lines]
-    )
+    probes = np.array([_spread(z) for z in lines])
     points = probes[inside]
     votes = shapely.contains_xy(polygons[outside][:, None], points.real, points.imag).sum(axis=1)
     held = votes >= 3
@@ -103,9 +101,12 @@ def _followers(n: int, inside: Indices, holder: Indices, size: npt.NDArray[np.fl
 
 
 def _spread(line: Complexes) -> Complexes:
-    """Five points along a polyline of few vertices, inside its sides."""
+    """Five points along a polyline; the same wherever a closed one begins and whichever way it goes."""
+    if line[0] == line[-1]:
+        lowest = int(np.lexsort((line.imag[:-1], line.real[:-1]))[0])
+        line = np.concatenate([line[lowest:-1], line[: lowest + 1]])
     length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(line)))])
-    at = length[-1] * np.array([0.07, 0.29, 0.47, 0.71, 0.91])
+    at = length[-1] * np.array([0.1, 0.3, 0.5, 0.7, 0.9])
     points: Complexes = np.interp(at, length, line.real) + 1j * np.interp(at, length, line.imag)
     return points
 

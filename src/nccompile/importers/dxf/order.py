@@ -57,6 +57,7 @@ def order_paths(
     back[canonical] = np.arange(len(canonical))
     up = np.where(parent >= 0, back[parent], -1)[canonical]
     paths, fixed = paths.select(canonical), fixed[canonical]
+    paths = reversed_paths(paths, _begins_higher(paths) & ~paths.closed & ~fixed)
     if start.rule == "longest":
         paths = _from_longest(paths)
     tour = Tour(paths, up, fixed, origin, start)
@@ -76,21 +77,32 @@ def rapid_length(paths: Paths, origin: complex) -> float:
 
 
 def _canonical(paths: Paths) -> Indices:
-    """The paths sorted by their lower left corner, then upper right, then length."""
-    first = paths.first[:-1]
-    x, y = paths.pieces.start.real, paths.pieces.start.imag
-    xe, ye = paths.pieces.end.real, paths.pieces.end.imag
-    length = np.add.reduceat(lengths(paths.pieces), first)
+    """The paths sorted by the box around their vertices, then length; full circles by the box around them.
+
+    So neither the direction nor the beginning of a path matters.  Rounding keeps what is equal equal.
+    """
+    pieces, first = paths.pieces, paths.first[:-1]
+    circle = _full_circles(pieces)
+    centre = pieces.p[:, 0] + 1j * pieces.p[:, 1]
+    reach = pieces.p[:, 2] * (1 + 1j)
+    low, high = np.where(circle, centre - reach, pieces.start), np.where(circle, centre + reach, pieces.end)
+    ends = [np.where(circle, z, other) for z, other in ((low, pieces.end), (high, pieces.start))]
     keys = (
-        np.round(length, 6),
-        np.maximum.reduceat(np.maximum(y, ye), first),
-        np.maximum.reduceat(np.maximum(x, xe), first),
-        np.minimum.reduceat(np.minimum(y, ye), first),
-        np.minimum.reduceat(np.minimum(x, xe), first),
         paths.group,
+        np.round(np.add.reduceat(lengths(pieces), first), 5),
+        np.round(np.maximum.reduceat(np.maximum(high.imag, ends[1].imag), first), 5),
+        np.round(np.maximum.reduceat(np.maximum(high.real, ends[1].real), first), 5),
+        np.round(np.minimum.reduceat(np.minimum(low.imag, ends[0].imag), first), 5),
+        np.round(np.minimum.reduceat(np.minimum(low.real, ends[0].real), first), 5),
     )
     order: Indices = np.lexsort(keys)
     return order
+
+
+def _begins_higher(paths: Paths) -> npt.NDArray[np.bool_]:
+    """Shape (n,): paths whose start lies right of their end, or above it."""
+    a, b = paths.pieces.start[paths.first[:-1]], paths.pieces.end[paths.first[1:] - 1]
+    return np.asarray((a.real > b.real) | ((a.real == b.real) & (a.imag > b.imag)), np.bool_)
 
 
 class Tour:
