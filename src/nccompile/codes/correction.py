@@ -22,6 +22,8 @@ PAGES: tuple[Page, ...] = (
         "it: a narrow slot, a concave arc or a step smaller than the tool. The message has the deepest place of the "
         "block and the depth. With G61 on, loop avoidance cuts such places out of the path, and the finding is a "
         "warning (SoftMotion §6.2.3, 6.2.4).",
+        "% a\nN10 G41 D6\nN20 G1 X10 F20\nN30 G1 Y10\nN40 G1 X0\nN50 G40",
+        "% a\nN10 G41 D2\nN20 G1 X10 F20\nN30 G1 Y10\nN40 G1 X0\nN50 G40",
     ),
     Page(
         "NC303",
