@@ -65,7 +65,7 @@ def within_limits(position: Floats, cycle: float) -> None:
     assert np.abs(j).max() <= JERK_X * (1 + 1e-6) + noise / cycle**3
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(straights(), st.sampled_from([1e-3, 1e-4]))
 def test_velocity_acceleration_and_jerk_are_inside_the_limits(path: Toolpath, cycle: float) -> None:
     if cycle < 1e-3 and path.length.sum() / path.feed.min() > 2.0:
@@ -76,7 +76,7 @@ def test_velocity_acceleration_and_jerk_are_inside_the_limits(path: Toolpath, cy
     assert samples.velocity[-1] == 0.0
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(straights())
 def test_no_feed_is_exceeded_anywhere(path: Toolpath) -> None:
     samples = sampled(planned(path))
@@ -104,7 +104,7 @@ def test_override_and_stops_keep_the_limits(path: Toolpath, changes: list[tuple[
     assert np.allclose(position[-1], path.target[-1], rtol=0.0, atol=1e-9)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(paths(most=12), st.integers(1, 40), st.sampled_from([1, 3, 4096]))
 def test_bursts_and_chunks_give_the_bits_of_the_sampler(path: Toolpath, n: int, size: int) -> None:
     chunks = planned(path)
