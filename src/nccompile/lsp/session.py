@@ -139,7 +139,8 @@ class Session:
 
     async def _run(self, work: Work) -> None:
         document = work.document
-        await asyncio.sleep(LONG_PAUSE if len(document.text.lines) > LARGE else PAUSE)
+        pause = LONG_PAUSE if len(document.text.lines) > LARGE else PAUSE
+        await asyncio.sleep(pause)
         if not work.wanted:
             return
         loop = asyncio.get_running_loop()
@@ -155,6 +156,9 @@ class Session:
             self._publish(document, True)
             self._done(document, time.perf_counter() - begun)
             work.checked.set_result(analysis)
+            await asyncio.sleep(pause)  # times are for those who read, not for those who type
+            if not work.wanted:
+                return
             times: Times | None = await loop.run_in_executor(self._pool, timed, analysis, work.is_wanted)
             analysis.times = times
             if work.wanted:
