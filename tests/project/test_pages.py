@@ -9,7 +9,6 @@ from nccompile.passes.pipeline import parse
 from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options
 
-
 PAGES = [page for page in correction.PAGES if page.bad]
 
 
