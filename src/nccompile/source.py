@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from threading import Lock
+from threading import Lock, Thread
 from typing import BinaryIO
 
 from nccompile.errors import UsageError
@@ -121,6 +121,8 @@ class LargeSource(Source):
         self._file = file
         self._lock = Lock()
         self._known = [1], [0]  # lines and their places, ascending
+        self._digest = hashlib.sha256()
+        self._hashing: Thread | None = None
         self.size = file.seek(0, os.SEEK_END)
 
     __eq__ = object.__eq__
@@ -140,13 +142,23 @@ class LargeSource(Source):
         for place in range(0, self.size, self.part):
             yield self.read_at(place, self.part)
 
-    @cached_property
+    def hash_ahead(self) -> None:
+        """Starts to compute `sha256` beside what follows."""
+        if self._hashing is None:
+            self._hashing = Thread(target=self._hash, daemon=True)
+            self._hashing.start()
+
+    def _hash(self) -> None:
+        for part in self.parts():
+            self._digest.update(part)
+
+    @property
     def sha256(self) -> str:
         """SHA-256 of the bytes."""
-        digest = hashlib.sha256()
-        for part in self.parts():
-            digest.update(part)
-        return digest.hexdigest()
+        self.hash_ahead()
+        assert self._hashing is not None
+        self._hashing.join()
+        return self._digest.hexdigest()
 
     @cached_property
     def encoding(self) -> str:

@@ -138,6 +138,8 @@ class Compilation:
 
     def write(self, path: Path) -> ncq.Meta | None:
         """Writes the OutQueue; no file is left, and None returned, if the program has errors."""
+        if isinstance(self.source, LargeSource):
+            self.source.hash_ahead()
         chunks = self.planned()
         if isinstance(self.source, LargeSource):
             chunks = ahead(chunks)  # the next chunks are made while this one is written
