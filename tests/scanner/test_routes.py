@@ -9,7 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import nccompile.source as source_module
+from nccompile.errors import UsageError
 from nccompile.kernels import use
+from nccompile.parser import scanner
 from nccompile.source import LargeSource, Source
 from tests.scanner.routes import compare, damaged, decoded, differences, large
 
@@ -139,6 +142,16 @@ def test_compiled_and_plain_kernels_give_the_same_bits() -> None:
         use(compiled=False)
     assert differences(plain[0], fast[0]) == []
     assert fast[1:] == plain[1:]
+
+
+def test_a_file_with_a_line_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (scanner, source_module):
+        monkeypatch.setattr(module, "MOST_LINE", 5000)
+    data = b"% a\r\nG1 X1 F1\r\n" + b"X1 " * 5000
+    with pytest.raises(UsageError, match="line 3 has more than"):
+        decoded(large(data, 1000), True)
+    with pytest.raises(UsageError, match="line 3 has more than"):
+        list(large(data, 1000).each_line())
 
 
 def test_large_files_and_pipes_are_read_by_parts(tmp_path: Path) -> None:
