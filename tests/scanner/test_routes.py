@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import nccompile.source as source_module
 from nccompile.errors import UsageError
-from nccompile.kernels import use
+from nccompile.kernels import compiled, use
 from nccompile.parser import scanner
 from nccompile.source import LargeSource, Source
 from tests.scanner.routes import compare, damaged, decoded, differences, large
@@ -134,12 +134,14 @@ def test_compiled_and_plain_kernels_give_the_same_bits() -> None:
     data = b"".join(sample.read_bytes() for sample in SAMPLES if b"G20" not in sample.read_bytes()).replace(
         b"%", b"(p)"
     )
+    before = compiled()
+    use(compiled=False)
     plain = decoded(large(data), True)
     use(compiled=True)
     try:
         fast = decoded(large(data), True)
     finally:
-        use(compiled=False)
+        use(compiled=before)
     assert differences(plain[0], fast[0]) == []
     assert fast[1:] == plain[1:]
 
