@@ -7,7 +7,17 @@ again; the module of a stage holds its pages.  Codes from NCx50 on are those of 
 
 from __future__ import annotations
 
-from nccompile.codes import correction, dynamics, geometry, imports, limits, lint_rules, runtime, syntax, words
+from nccompile.codes import (
+    correction,
+    dynamics,
+    geometry,
+    imports,
+    limits,
+    lint_rules,
+    runtime,
+    syntax,
+    words,
+)
 from nccompile.codes.page import Page
 
 __all__ = ["PAGES", "Page"]
