@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from ezdxf.filemanagement import readfile
 
 from tests.cli.conftest import SAMPLES, Command
 from tests.importers.workshop import new_drawing
@@ -148,6 +149,24 @@ def test_a_program_exported_and_imported_again(command: Command, part: Path, tmp
     ]
     assert exported.code == imported.code == 0
     assert blocks[0] == blocks[1]
+
+
+def test_the_path_before_and_behind_the_passes(command: Command, tmp_path: Path) -> None:
+    (tmp_path / "p.nc").write_text(
+        "% p\nN10 G0 X-10 Y0\nN20 G41 D2\nN30 G1 X0 F20\nN40 G1 X30\nN50 G1 Y30\nN60 G40\nN70 G1 Y40\n"
+    )
+
+    result = command("export-dxf", tmp_path / "p.nc", "-p", "tool-radius")
+
+    space = readfile(str(tmp_path / "p.dxf")).modelspace()
+    layers = {entity.dxf.layer for entity in space}
+    behind = [entity for entity in space if entity.dxf.layer == "NC_FEED_PASSES"]
+    points = [
+        point for entity in behind if entity.dxftype() == "LWPOLYLINE" for point in entity.get_points("xy")
+    ]
+    assert result.code == 0
+    assert {"NC_FEED", "NC_FEED_PASSES"} <= layers
+    assert any(abs(x - 28) < 1e-6 for x, _ in points)
 
 
 def test_queues_are_exported_too(command: Command, part: Path, tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ from nccompile.errors import UsageError
 from nccompile.importers.dxf.job import Job, Operation, load_job
 from nccompile.importers.dxf.offset import offset_path
 from nccompile.importers.dxf.pieces import Pieces, bulge_row, ellipse_row, end_tangents, flatten
-from nccompile.toolpath import EventKind, Kind, Mark, Toolpath
+from nccompile.passes.tool_radius import ToolRadius
+from nccompile.toolpath import EventKind, Kind, Toolpath
 from tests.importers.workshop import Made, codes, compiled, machine, new_drawing
 
 ROOT = Path(__file__).parents[2]
@@ -139,21 +140,26 @@ def test_side_and_direction(side: str, size: float, direction: str, climb: bool,
     assert tool_left == climb
 
 
-def test_g41_marks_the_path_between_its_leads(tmp_path: Path) -> None:
-    lead = {"kind": "line", "length": 3}
+@pytest.mark.parametrize("depth", [0.0, 4.0])
+def test_g41_corrects_from_plunge_to_retract(depth: float, tmp_path: Path) -> None:
     made = machine(
-        square(), tmp_path,
-        job(side="outside", by="g41", tool_radius=1.5, direction="climb", lead_in=lead, lead_out=lead),
-    )  # fmt: skip
+        square(),
+        tmp_path,
+        job(side="outside", by="g41", tool_radius=1.5, direction="climb", depth=depth, pass_depth=2),
+    )
 
-    path, _ = compiled(made.text)
+    path, found = compiled(made.text)
+    behind = Toolpath.join(list(ToolRadius().apply(iter([path]))))
 
     feeds = np.flatnonzero(path.kind == Kind.LINE)
-    assert path.mark[feeds[0]] == Mark.TOOL_LEFT
-    assert path.mark[feeds[-1]] == Mark.TOOL_STOP
+    assert not found.counts
+    assert made.text.count("G41 D1.5") == made.text.count("G40") == (2 if depth else 1)
     assert (path.radius[feeds] == 1.5).all()
-    assert feed_line(path).bounds[2] == pytest.approx(20.0)
-    assert "G41 D1.5" in made.text
+    assert feed_line(path).bounds == pytest.approx((0, 0, 20, 20))
+    assert feed_line(behind).bounds == pytest.approx((-1.5, -1.5, 21.5, 21.5))
+    down = np.flatnonzero((behind.kind == Kind.LINE) & (behind.target[:, 2] < behind.starts()[:, 2]))
+    contour = shapely.box(0, 0, 20, 20)
+    assert all(shapely.Point(behind.target[i, :2]).distance(contour) > 1.5 - 1e-6 for i in down)
 
 
 def test_open_paths_have_no_inside(tmp_path: Path) -> None:
@@ -320,6 +326,7 @@ def test_operations_take_layers_and_colours(tmp_path: Path) -> None:
         ("[[operation]]\ncolors = ['mauve']", "none of red"),
         ("[[operation]]\ndepth = 1\ntabs = { height = 2 }", "tabs.height"),
         ("[[operation]\n", "TOML syntax"),
+        ("[[operation]]\nby = 'g41'\novercut = 2", "tool-radius"),
         ("[[operation]]\nlead_in = { kind = 'spiral' }", "lead_in"),
     ],
 )

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-
-import numpy as np
+from typing import Any
 
 from nccompile.cli.inputs import ProgramOptions, finish, machine_of, read_program
 from nccompile.cli.options import Report
 from nccompile.cli.queues import is_queue, read_queue
+from nccompile.errors import UsageError
 from nccompile.toolchain import Compilation
 from nccompile.toolpath import Toolpath
 
@@ -19,29 +19,24 @@ PASSES = "_PASSES"
 
 
 def stages(
-    path: Path, machine: Path | None, settings: tuple[str | None, list[str] | None, bool], form: Report
+    path: Path, machine: Path | None, settings: dict[str, Any], form: Report
 ) -> Iterator[tuple[str, Iterable[Toolpath]]]:
-    """Layer suffix and toolpath of every stage worth drawing.
+    """Layer suffix and toolpath of every stage.
 
-    A queue has one.  A program has the toolpath as programmed and, if the passes changed its geometry, as
-    they left it.
+    A queue has one.  A program has the toolpath as programmed and, if passes are asked for, as they leave it.
+    Args: settings: options of the program by name, as `ProgramOptions` has them.
     """
+    chosen = ProgramOptions(**settings)
     if is_queue(path):
+        if chosen.given:
+            raise UsageError(f"{path} is an OutQueue: {', '.join(chosen.given)} acts on programs only")
         yield "", read_queue(path).chunks()
         return
-    options = ProgramOptions(*settings).resolve(machine_of(machine))
-    compilation = Compilation(read_program(path), options)
-    decoded = list(compilation.decoded())
+    compilation = Compilation(read_program(path), chosen.resolve(machine_of(machine)))
+    passed = list(compilation.passed())
     finish(compilation, form)
-    yield "", decoded
-    planned = list(Compilation(read_program(path), options).planned())
-    if not _same_path(Toolpath.join(decoded), Toolpath.join(planned)):
-        yield PASSES, planned
-
-
-def _same_path(a: Toolpath, b: Toolpath) -> bool:
-    return (
-        np.array_equal(a.kind, b.kind)
-        and np.array_equal(a.target, b.target)
-        and np.array_equal(a.curves.parameters, b.curves.parameters)
-    )
+    if not chosen.passes:
+        yield "", passed
+        return
+    yield "", Compilation(read_program(path), chosen.resolve(machine_of(machine))).decoded()
+    yield PASSES, passed

@@ -8,7 +8,16 @@ from typing import Annotated
 
 import typer
 
-from nccompile.cli.options import Define, DiagnosticsFormat, Input, MachineFile, Report, SkipBlocks, Start
+from nccompile.cli.options import (
+    Define,
+    DiagnosticsFormat,
+    Input,
+    MachineFile,
+    Passes,
+    Report,
+    SkipBlocks,
+    Start,
+)
 
 __all__ = ["export_dxf"]
 
@@ -23,12 +32,13 @@ def export_dxf(
     start: Start = None,
     define: Define = None,
     skip_blocks: SkipBlocks = False,
+    passes: Passes = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
 ) -> None:
     """Draw a program or an OutQueue as DXF: rapids, feed moves and switch points on layers of their own.
 
-    Of a program both stages are drawn: as programmed, and on layers with the suffix _PASSES as the passes
-    changed it, if they did.
+    Of a program both stages are drawn: as programmed, and with --passes on layers with the suffix _PASSES as
+    the passes changed it.
     """
     from nccompile.backend.dxf import DxfExport
     from nccompile.backend.files import replacing
@@ -36,7 +46,7 @@ def export_dxf(
 
     place = output if output is not None else path.with_suffix(".dxf")
     drawing = DxfExport()
-    settings = (start, define, skip_blocks)
+    settings = {"start": start, "define": define, "skip_blocks": skip_blocks, "passes": passes}
     count = sum(
         drawing.add(chunks, suffix) for suffix, chunks in stages(path, machine, settings, diagnostics)
     )

@@ -56,22 +56,40 @@ class _Way:
 def cut_contour(contour: Contour, operation: Operation, moves: Moves, obstacles: Obstacles, say: Say) -> None:
     """Adds the moves of one contour, all passes."""
     way = _way(contour, operation, obstacles, say)
-    height = operation.height
     levels = operation.levels
+    lifted = not way.stays or contour.corrected
     for k, level in enumerate(levels):
-        if k == 0 or not way.stays:
-            _approach(way.begin, height, operation, moves)
+        if k == 0 or lifted:
+            _approach(way.begin, operation.height, moves)
+            moves.radius(operation.tool_radius if contour.corrected else 0.0)
+        plunge = moves.rows
         moves.line(way.begin, level, operation.plunge_feed or operation.feed)
-        if k == 0 or not way.stays:
+        plunged = moves.rows > plunge
+        if k == 0 or lifted:
             _start(operation, moves)
-        _pass(way, contour, operation, level, moves)
-        if k == len(levels) - 1 or not way.stays:
-            if operation.m_off is not None:
-                moves.wait(Kind.M_FUNCTION, operation.m_off, 0.0)
-            moves.rapid(complex(moves.at[0], moves.at[1]), height)
+        first = _pass(way, operation, level, moves)
+        last = k == len(levels) - 1
+        if (last or lifted) and operation.m_off is not None:
+            moves.wait(Kind.M_FUNCTION, operation.m_off, 0.0)
+        if contour.corrected:
+            _correct(contour, operation, plunge if plunged else first, moves)
+        elif last or lifted:
+            moves.rapid(complex(moves.at[0], moves.at[1]), operation.height)
 
 
-def _approach(begin: complex, height: float, operation: Operation, moves: Moves) -> None:
+def _correct(contour: Contour, operation: Operation, first: int, moves: Moves) -> None:
+    """G41 or G42 from the plunge to the retract: the tool goes down and comes up beside the contour.
+
+    The retract is a feed move, since only feed moves are corrected.
+    """
+    last = moves.rows - 1 - (operation.m_off is not None)
+    retract = moves.rows
+    moves.line(complex(moves.at[0], moves.at[1]), operation.height, operation.feed)
+    moves.mark(first, Mark.TOOL_LEFT if contour.left else Mark.TOOL_RIGHT)
+    moves.mark(retract if moves.rows > retract else last, Mark.TOOL_STOP)
+
+
+def _approach(begin: complex, height: float, moves: Moves) -> None:
     moves.rapid(complex(moves.at[0], moves.at[1]), height)
     moves.rapid(begin, height)
 
@@ -84,31 +102,25 @@ def _start(operation: Operation, moves: Moves) -> None:
         moves.wait(Kind.DWELL, 0, operation.dwell)
 
 
-def _pass(way: _Way, contour: Contour, operation: Operation, level: float, moves: Moves) -> None:
-    """Lead-in, contour, overcut and lead-out at one level, with marks and switch points at both ends."""
-    if contour.corrected:
-        moves.radius(operation.tool_radius)
+def _pass(way: _Way, operation: Operation, level: float, moves: Moves) -> int:
+    """Lead-in, contour, overcut and lead-out at one level, with switch points at both ends; its first row."""
     first = moves.rows
+    plunge = operation.plunge_feed or operation.feed
     moves.follow(way.into, level, operation.feed)
     top = 0.0 if operation.tabs is None else operation.tabs.height - operation.depth
     if operation.tabs is not None and level < top - 1e-9:
         for part, raised in tab_stretches(way.path, operation.tabs, operation.tool_radius):
-            moves.line(
-                complex(part.start[0]), top if raised else level, operation.plunge_feed or operation.feed
-            )
+            moves.line(complex(part.start[0]), top if raised else level, plunge)
             moves.follow(part, top if raised else level, operation.feed)
-        moves.line(complex(way.path.end[-1]), level, operation.plunge_feed or operation.feed)
+        moves.line(complex(way.path.end[-1]), level, plunge)
     else:
         moves.follow(way.path, level, operation.feed)
     moves.follow(way.over, level, operation.feed)
     moves.follow(way.out, level, operation.feed)
-    last = moves.rows - 1
-    if contour.corrected:
-        moves.mark(first, Mark.TOOL_LEFT if contour.left else Mark.TOOL_RIGHT)
-        moves.mark(last, Mark.TOOL_STOP)
     if operation.switch is not None:
         moves.switch(first, operation.switch, 0.0)
-        moves.switch(last, -operation.switch, 1.0)
+        moves.switch(moves.rows - 1, -operation.switch, 1.0)
+    return first
 
 
 def _way(contour: Contour, operation: Operation, obstacles: Obstacles, say: Say) -> _Way:

@@ -97,6 +97,11 @@ class Operation(_Section):
     def _together(self) -> Operation:
         if self.side is not Side.ON and self.tool_radius == 0.0:
             raise ValueError(f'side = "{self.side}" needs a tool_radius above 0')
+        if self.by == "g41" and (self.lead_in or self.lead_out or self.overcut):
+            raise ValueError(
+                'lead_in, lead_out and overcut go with by = "geometry"; with G41 the pass makes the leads: '
+                'compile with -p "tool-radius{lead=arc,length=3}"'
+            )
         if self.tabs is not None and self.tabs.height > self.depth:
             raise ValueError(f"tabs.height {self.tabs.height:g} must not be above depth {self.depth:g}")
         unknown = [c for c in self.colors if isinstance(c, str) and c.lower() not in COLORS]
