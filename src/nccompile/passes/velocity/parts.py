@@ -57,9 +57,10 @@ def parted(path: Toolpath, parts: Parts) -> Toolpath:
         mark=np.where(inner, 0, path.mark[row]).astype(np.uint16),
         v_end=np.zeros(m),
     )  # fmt: skip
-    return out.replace(
-        length=np.where(path.length[row] > 0.0, path_lengths(out.replace(profile=out.profile & 0x7FFF)), 0.0)
-    )
+    # A row that is not cut keeps its length to the bit, whatever else is in the chunk.
+    uncut = (parts.p0 == 0.0) & (parts.p1 == 1.0)
+    measured = path_lengths(out.replace(profile=out.profile & 0x7FFF))
+    return out.replace(length=np.where(uncut | (path.length[row] <= 0.0), path.length[row], measured))
 
 
 def _events(path: Toolpath, parts: Parts) -> Events:
