@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.filemanagement import readfile
 
 from tests.cli.conftest import SAMPLES, Command
@@ -160,9 +161,9 @@ def test_the_path_before_and_behind_the_passes(command: Command, tmp_path: Path)
 
     space = readfile(str(tmp_path / "p.dxf")).modelspace()
     layers = {entity.dxf.layer for entity in space}
-    behind = [entity for entity in space if entity.dxf.layer == "NC_FEED_PASSES"]
+    behind = space.query('LWPOLYLINE[layer=="NC_FEED_PASSES"]')
     points = [
-        point for entity in behind if entity.dxftype() == "LWPOLYLINE" for point in entity.get_points("xy")
+        point for entity in behind if isinstance(entity, LWPolyline) for point in entity.get_points("xy")
     ]
     assert result.code == 0
     assert {"NC_FEED", "NC_FEED_PASSES"} <= layers
