@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import json
+import sys
 from pathlib import Path
 
 import pytest
 from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.filemanagement import readfile
 
+from nccompile.cli import dxf_output
 from tests.cli.conftest import SAMPLES, Command
 from tests.importers.workshop import new_drawing
 
@@ -105,6 +108,28 @@ def test_report_and_preview(command: Command, part: Path, tmp_path: Path) -> Non
                                 "ENGRAVE ü": {"paths": 1, "length": pytest.approx(15.811, abs=1e-3)}}  # fmt: skip
     assert report["taken"] == {"CIRCLE": 1, "LINE": 1, "LWPOLYLINE": 1}
     assert (tmp_path / "p.png").read_bytes()[:4] == b"\x89PNG"
+
+
+class Terminal(io.StringIO):
+    """Standard error that is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize(("long", "shown"), [(0, True), (1_000_000, False)])
+def test_long_imports_show_their_progress(
+    long: int, shown: bool, command: Command, part: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    terminal = Terminal()
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setattr(dxf_output, "LONG", long)
+
+    result = command("import-dxf", part)
+
+    assert result.code == 0
+    assert ("writing" in terminal.getvalue()) == shown
 
 
 def test_a_broken_drawing_leaves_no_program(command: Command, tmp_path: Path) -> None:
