@@ -156,3 +156,25 @@ def test_fits_are_stable_when_run_again() -> None:
     again, _ = run(FitArcs(), once)
     assert len(again) >= 0.7 * len(once)
     assert np.array_equal(again.end, once.end)
+
+
+def wandering(seed: int) -> tuple[Toolpath, float]:
+    """A run of coarse chords that bend here and there, and a tolerance of the size of their sag."""
+    draw = np.random.default_rng(seed)
+    n, bend, tolerance = int(draw.integers(5, 120)), draw.uniform(1, 29), 10 ** draw.uniform(-2.7, -0.7)
+    if seed % 2:
+        turn = np.cumsum(np.radians(draw.uniform(-bend, bend, n)))
+        size = draw.uniform(0.2, 0.8, n)
+    else:
+        wave = np.sin(np.arange(n) * draw.uniform(0.3, 2) + draw.uniform(0, 6))
+        turn = np.radians(bend) * wave + 0.1 * draw.normal(size=n)
+        size = np.full(n, 0.33)
+    x, y = (np.round(np.cumsum(size * f(turn)), 3).tolist() for f in (np.cos, np.sin))
+    return polyline([(0.0, 0.0), *zip(x, y, strict=True)]), float(tolerance)
+
+
+@pytest.mark.parametrize("seed", [641, 1885, *range(40)])  # 641: joints of the spline inside the chords
+def test_coarse_bending_runs_keep_the_tolerance(seed: int) -> None:
+    path, tolerance = wandering(seed)
+    for p in (FitArcs(tolerance=tolerance, least=2), FitSplines(tolerance=tolerance)):
+        assert (run(p, path)[1].deviation or 0.0) <= tolerance

@@ -160,6 +160,17 @@ def _pieces(t: Floats, spans: int, control: Floats, rows: Floats) -> None:
 
 
 @kernel
+def _off(points: Floats, i: int, c: int, rows: Floats, j: int, v: float) -> tuple[float, float]:
+    """Coordinate c of (middle of the chord that ends in vertex i) - S, and of S', at v behind the start of span j."""
+    p1 = float(rows[j, 4 * c + 1])
+    p2 = float(rows[j, 4 * c + 2])
+    p3 = float(rows[j, 4 * c + 3])
+    middle = 0.5 * (float(points[i - 1, c]) + float(points[i, c]))
+    place = float(rows[j, 4 * c]) + v * (p1 + v * (p2 + v * p3))
+    return middle - place, p1 + v * (2.0 * p2 + 3.0 * v * p3)
+
+
+@kernel
 def _errors(
     points: Floats, tau: Floats, t: Floats, spans: int, rows: Floats, errors: Floats, needs: Floats
 ) -> float:  # fmt: skip
@@ -218,8 +229,30 @@ def _errors(
             mx = 0.5 * (ex + vx) + sag * (bx + wx)
             my = 0.5 * (ey + vy) + sag * (by + wy)
             mz = 0.5 * (ez + vz) + sag * (bz + wz)
+            most_bend = max(bend, bend_before)
+            if t[span + 3] > tau[i - 1]:
+                # A joint inside the chord: S'' has a corner there, so the middle is looked up.
+                j = span
+                while t[j + 3] > tau[i - 1]:
+                    kx = float(rows[j, 2])
+                    ky = float(rows[j, 6])
+                    kz = float(rows[j, 10])
+                    most_bend = max(most_bend, 2.0 * sqrt(kx * kx + ky * ky + kz * kz))
+                    j -= 1
+                v = x - 0.5 * size
+                j = span
+                while t[j + 3] > v:
+                    j -= 1
+                v -= float(t[j + 3])
+                mx, nx = _off(points, i, 0, rows, j, v)
+                my, ny = _off(points, i, 1, rows, j, v)
+                mz, nz = _off(points, i, 2, rows, j, v)
+                along = (mx * nx + my * ny + mz * nz) / max(nx * nx + ny * ny + nz * nz, 0.25)
+                mx -= along * nx
+                my -= along * ny
+                mz -= along * nz
             middle = sqrt(mx * mx + my * my + mz * mz)
-            bump = 0.5 * sag * max(bend, bend_before)  # of each half
+            bump = 0.5 * sag * most_bend  # of each half
             bound = max(off, before, middle)
             for half in range(2):
                 ax = ex - mx if half == 0 else vx - mx
@@ -233,7 +266,7 @@ def _errors(
             j = span
             while True:
                 errors[j] = max(float(errors[j]), bound)
-                needs[j] = max(float(needs[j]), sag * max(bend, bend_before))
+                needs[j] = max(float(needs[j]), sag * most_bend)
                 if j == 0 or t[j + 3] <= tau[i - 1]:
                     break
                 j -= 1
