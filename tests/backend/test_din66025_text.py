@@ -85,7 +85,9 @@ def test_cubics_become_arcs_within_the_tolerance() -> None:
     assert not found.counts
     assert set(again.kind.tolist()) <= {Kind.LINE, Kind.ARC}
     arcs = again.curves.parameters
-    points = sample_curves(np.full(len(arcs), Kind.ARC, np.uint8), arcs, np.linspace(0, 1, 9))[:, :, :2].reshape(-1, 2)
+    points = sample_curves(np.full(len(arcs), Kind.ARC, np.uint8), arcs, np.linspace(0, 1, 9))[
+        :, :, :2
+    ].reshape(-1, 2)
     off = shapely.distance(shapely.points(points), shapely.LineString(np.column_stack([z.real, z.imag])))
     assert off.max() < 0.0101
     assert again.length.sum() == pytest.approx(path.length.sum(), rel=1e-5)

@@ -59,7 +59,9 @@ def _signs(chunk: Toolpath) -> Iterator[str]:
             yield f"its column {name} is not positive for every move: the queue was not planned"
     if len(chunk) and int(chunk.mark.max()) > _ALL_MARKS:
         yield "its column mark holds unknown marks"
-    if len(chunk) and int((chunk.profile & 0x7FFF).max()) >> len(chunk.axes):  # bit 15: goes on in the next row
+    if len(chunk) and int((chunk.profile & 0x7FFF).max()) >> len(
+        chunk.axes
+    ):  # bit 15: goes on in the next row
         yield "its column profile names axes that the queue does not have"
 
 
