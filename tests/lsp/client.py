@@ -92,7 +92,7 @@ class Client:
         """Handles messages until `found` gives something."""
         until = time.monotonic() + PATIENCE
         while (value := found()) is None:
-            message = self.incoming.get(timeout=max(0.01, until - time.monotonic()))
+            message = self._next(until)
             if "method" in message and "id" in message:
                 self.send({"id": message["id"], "result": None})
                 self.notifications.append(message)
@@ -101,6 +101,21 @@ class Client:
             else:
                 self.answers[message["id"]] = message
         return value
+
+    def _next(self, until: float) -> Json:
+        """The next message; fails with what the server said if it has ended or keeps silent."""
+        while True:
+            try:
+                return self.incoming.get(timeout=0.5)
+            except queue.Empty:
+                code = self.process.poll()
+                if code is None and time.monotonic() < until:
+                    continue
+                stream = self.process.stderr
+                assert stream is not None
+                said = stream.read().decode() if code is not None else ""
+                state = "keeps silent" if code is None else f"ended with code {code}"
+                raise AssertionError(f"the server {state}: {said[-2000:]}") from None
 
     def open(self, uri: str, text: str) -> None:
         self.versions[uri], self.texts[uri] = 1, text
