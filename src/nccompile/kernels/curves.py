@@ -42,6 +42,7 @@ NODES = 129
 
 _QUARTER = 1.5707963267948966
 
+_STANDSTILL = 1e-9  # relative: a speed minimum below it is a cusp, found by bisection to 1e-16
 _SAME_LENGTH = 2e-14  # relative: 10 and 20 points agree; the kept 20-point value is better by many digits
 _FOUND = 5e-14  # relative to the whole length: the inverse stops here
 _NEWTON = 1e-8  # relative to the distance to both nodes: the next Newton step ends below rounding
@@ -87,7 +88,10 @@ def max_curvature(kind: int, p: Floats) -> float:
     cuts = np.empty(8)
     count = _cuts(kind, p, cuts)
     best = max(curvature(kind, p, 0.0), curvature(kind, p, 1.0))
+    pace = _STANDSTILL * (speed(kind, p, 0.0) + speed(kind, p, 0.5) + speed(kind, p, 1.0))
     for i in range(count):
+        if kind == POLYNOMIAL and speed(kind, p, float(cuts[i])) <= pace:
+            return inf  # turns back on itself, also where it is a straight line
         best = max(best, curvature(kind, p, float(cuts[i])))
     if kind == ELLIPSE:
         return best

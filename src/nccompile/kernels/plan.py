@@ -34,7 +34,7 @@ _TANGENTIAL = 0.6  # on curves: share of an axis's acceleration for changing the
 @kernel
 def row_limits(
     kind: Kinds, start: Floats, target: Floats, curve: Ints, plane: Kinds, parameters: Floats, length: Floats,
-    profile: npt.NDArray[np.uint16], v_axis: Floats, a_axis: Floats, rapid: Floats, peak: float,
+    profile: npt.NDArray[np.uint16], v_axis: Floats, a_axis: Floats, rapid: Floats, creep: Floats, peak: float,
     straight: Kinds, feed: Floats, accel: Floats, decel: Floats, v_limit: Floats, t_start: Floats, t_end: Floats,
 ) -> None:  # fmt: skip
     """Per row: the slopes q' at both ends, and what the axes allow.
@@ -46,6 +46,8 @@ def row_limits(
 
     On a curve of curvature c, the tangential share at and the normal share an of an axis's limit a hold
     at² + an² <= a²:  v_limit = sqrt(an / c); where the program accelerates less than 0.6 a, an takes the rest.
+    Even a cusp turns an axis velocity by no more than 2 v, so `creep` (k,) [mm/s], half of what may jump in a
+    cycle besides the tangential share, is allowed at any curvature.
     """
     axes = target.shape[1]
     for i in range(len(kind)):
@@ -127,7 +129,11 @@ def row_limits(
                 bend = share * share * max_curvature(int(kind[i]), p)
                 wanted = min(max(accel[i], decel[i]), a_top) * peak * share
                 if bend > 0.0:
-                    v_top = min(v_top, sqrt(sqrt(max(a_plane * a_plane - wanted * wanted, 0.0)) / bend))
+                    slow = min(float(creep[first]), float(creep[second]))
+                    if third >= 0:
+                        slow = min(slow, float(creep[third]))
+                    across = sqrt(max(a_plane * a_plane - wanted * wanted, 0.0))
+                    v_top = min(v_top, max(sqrt(across / bend), slow))
         v_limit[i] = v_top
         accel[i] = min(accel[i], a_top)
         decel[i] = min(decel[i], a_top)
@@ -167,7 +173,7 @@ def jerk_limits(
             second = 0 if at == 1 else at // 2 + 1
             jerk = min(j_axis[first], j_axis[second])
         bend = max_curvature(int(kind[i]), parameters[row])
-        if bend > 0.0 and jerk < inf:
+        if 0.0 < bend < inf and jerk < inf:
             v_limit[i] = min(
                 v_limit[i], exp(log(0.2 * jerk / (bend * bend)) / 3.0), 0.2 * jerk / (bend * ramp)
             )

@@ -40,8 +40,9 @@ def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
         accel[:] = decel[:] = _UNBOUND
     kernels.row_limits(
         chunk.kind, chunk.starts(), chunk.target, chunk.curve, chunk.curves.plane, chunk.curves.parameters,
-        chunk.length, chunk.profile, axis.velocity, axis.acceleration, axis.rapid, peak_factor(settings.law),
-        straight, feed, accel, decel, v_limit, t_start, t_end,
+        chunk.length, chunk.profile, axis.velocity, axis.acceleration, axis.rapid,
+        0.2 * axis.acceleration * settings.cycle + 0.5 * axis.velocity_step, peak_factor(settings.law), straight,
+        feed, accel, decel, v_limit, t_start, t_end,
     )  # fmt: skip
     if settings.planner == JERK and axis.jerk is not None:
         kernels.jerk_limits(
