@@ -21,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 Kinds = npt.NDArray[np.uint8]
 
-_POSITIONING, _ARC, _SET_POSITION, _DWELL = 0, 2, 5, 6
+_POSITIONING, _SET_POSITION = 0, 5
 _SPACE = 3
 
 _S_SLOPE = 1.875  # greatest slope of 10 w³ - 15 w⁴ + 6 w⁵
