@@ -12,6 +12,20 @@ loop.  M functions, dwells and switch points of a loop move to its crossing.
 
 Rows within reach of each other are found through a tree of boxes: about log n steps a row.  `window` limits how
 many later rows a row is compared with.
+
+Example:
+    -p avoid-loops
+    --- in
+    % t
+    N10 G61
+    N20 G1 X10 F50
+    N30 G1 Y5
+    N40 G1 X5
+    N50 G1 Y-5
+    N60 G60
+    --- out
+    line 5 0 0 feed 50 source 3
+    line 5 -5 0 feed 50 mark 64 source 6
 """
 
 from __future__ import annotations

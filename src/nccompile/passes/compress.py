@@ -7,6 +7,18 @@ Two lines are one if feed, accelerations, D and S-profile are equal, no mark or 
 every dropped point is within 1e-9 mm of the point at the same share of the way, on all axes.  A line without
 length stays if it carries a switch point or a mark, or follows a set position, which it puts out (SoftMotion
 §3.2, G92).
+
+Example:
+    -p compress
+    --- in
+    % t
+    N10 G1 X10 F50
+    N20 G1 X10
+    N30 G1 X20
+    N40 G1 X30 F20
+    --- out
+    line 20 0 0 feed 50 source 2
+    line 30 0 0 feed 20 source 5
 """
 
 from __future__ import annotations

@@ -10,6 +10,19 @@
 Greedy: each arc replaces the longest run that it can.  An arc lies in X-Y, or with `planes` in Z-X or Y-Z where
 that axis stands still; if the third axis moves linearly with the way it is a helix.  Additional axes must move
 linearly with the way within the same number (mm or degrees).  Corners sharper than `angle` stay exact.
+
+Example:
+    -p fit-arcs{tolerance=0.05}
+    --- in
+    % t
+    N10 G0 X10
+    N20 G1 X9.903926 Y1.382874 F50
+    N30 G1 X9.617551 Y2.739177
+    N40 G1 X9.146379 Y4.042850
+    N50 G1 X8.499461 Y5.268846
+    --- out
+    positioning 10 0 0 source 2
+    arc 8.499461 5.268846 0 feed 50 source 3 xy center -0.000555 -8e-06 radius 10.000555 start 1e-06 sweep 0.554897
 """
 
 from __future__ import annotations

@@ -8,6 +8,19 @@
 At least one of the three is asked for; all given ones hold.  The spread is by arc length for `length`, by
 arc length weighted with the bend otherwise, so flat parts get fewer lines.  Additional axes and the third axis
 of a helix keep their value at the same share of the way; an axis in the S-profile is run along its S.
+
+Example:
+    -p flatten{tolerance=0.5,arcs}
+    --- in
+    % t
+    N10 G3 X20 R10 F50
+    --- out
+    line 1.339746 -5 0 feed 50 source 2
+    line 5 -8.660254 0 feed 50 source 2
+    line 10 -10 0 feed 50 source 2
+    line 15 -8.660254 0 feed 50 source 2
+    line 18.660254 -5 0 feed 50 source 2
+    line 20 0 0 feed 50 source 2
 """
 
 from __future__ import annotations

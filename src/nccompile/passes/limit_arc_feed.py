@@ -10,6 +10,16 @@
       k1 = 0 ^ v_end                a decoded segment has no end velocity of its own.
 
 (SoftMotion §6.2.7, SMC_LimitCircularVelocities: dMaxAcc, dMaxAccJump, dVmaxPerRadiusUnit; 0 = no check.)
+
+Example:
+    -p limit-arc-feed{accel=1000}
+    --- in
+    % t
+    N10 G1 X10 F100
+    N20 G3 X11 Y1 R1
+    --- out
+    line 10 0 0 feed 100 source 2
+    arc 11 1 0 feed 31.622777 source 3 xy center 10 1 radius 1 start -1.570796 sweep 1.570796
 """
 
 from __future__ import annotations

@@ -4,6 +4,19 @@
 
 A contour is a run of feed segments; it is closed if it ends where it starts on all axes.  The move before it
 now goes to the new start.  A move after the contour starts at the new end, so the next position is unchanged.
+
+Example:
+    -p move-start{segment=2}
+    --- in
+    % t
+    N10 G1 X10 F50
+    N20 G1 Y10
+    N30 G1 X0 Y0
+    --- out
+    start 10 0 0
+    line 10 10 0 feed 50 source 3
+    line 0 0 0 feed 50 source 4
+    line 10 0 0 feed 50 source 2
 """
 
 from __future__ import annotations

@@ -5,6 +5,18 @@
 
 Start marks become stop marks and the other way round; left and right change places, for the tool stays on its
 side of the material.  The whole path is held in memory.
+
+Example:
+    -p reverse
+    --- in
+    % t
+    N10 H3 O0.2 G1 X10 F50
+    N20 G1 Y10
+    --- out
+    start 10 10 0
+    line 10 0 0 feed 50 source 3
+    line 0 0 0 feed 50 source 2
+      switch 3 at 0.8
 """
 
 from __future__ import annotations

@@ -9,6 +9,19 @@
 With distance=true, r is the distance |aV| itself, as the manual's text has it; at a right angle between
 lines both are the same.  In a plane parallel to X-Y the corner is an arc; between lines in space it is
 cubics off the arc by less than 3e-4 r.  Corners between curves that leave the plane stay.
+
+Example:
+    -p round-corners
+    --- in
+    % t
+    N10 G52 D2
+    N20 G1 X10 F50
+    N30 G1 Y10
+    N40 G50
+    --- out
+    line 8 0 0 feed 50 tool_radius 2 source 3
+    arc 10 2 0 feed 50 tool_radius 2 source 3 xy center 8 2 radius 2 start -1.570796 sweep 1.570796
+    line 10 10 0 feed 50 tool_radius 2 mark 8 source 4
 """
 
 from __future__ import annotations

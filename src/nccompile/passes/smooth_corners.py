@@ -5,6 +5,17 @@
            ', b        two lines:    one cubic with control points a, V, V, b (curvature 0 at both ends)
             │          with curves:  three cubics, C2 inside, with tangent and curvature of the rows at
             ●                        a and b (geometry/corners.py)
+
+Example:
+    -p smooth-corners{distance=2,everywhere}
+    --- in
+    % t
+    N10 G1 X10 F50
+    N20 G1 Y10
+    --- out
+    line 8 0 0 feed 50 source 2
+    polynomial 10 2 0 feed 50 source 2 xy u 8 6 -6 2 v 0 0 0 2
+    line 10 10 0 feed 50 source 3
 """
 
 from __future__ import annotations

@@ -4,6 +4,16 @@
 
 Segments are counted from 1 in the path as it reaches this pass, or found by their source line: the first moving
 segment of that line is split.  Switch points keep their place.
+
+Example:
+    -p split{segment=1,at=0.25}
+    --- in
+    % t
+    N10 H1 O0.5 G1 X20 F50
+    --- out
+    line 5 0 0 feed 50 source 2
+    line 20 0 0 feed 50 source 2
+      switch 1 at 0.333333
 """
 
 from __future__ import annotations

@@ -13,6 +13,21 @@
 Rows keep their feed, their other axes and their switch points (same share of the way).  A change of D moves the
 tool across on a line.  Where the tool comes nearer to the contour than r it would cut into it: a gouge, with its
 place and depth.  It is an error (gouge=error) unless G61 is on there, so that avoid-loops cuts it, or gouge=warn.
+
+Example:
+    -p tool-radius
+    --- in
+    % t
+    N10 G0 X10
+    N20 G42 D1
+    N30 G1 X20 F50
+    N40 G1 Y10
+    N50 G40
+    --- out
+    positioning 10 -1 0 source 2
+    line 20 -1 0 feed 50 tool_radius 1 source 4
+    arc 21 0 0 feed 50 tool_radius 1 source 4 xy center 20 0 radius 1 start -1.570796 sweep 1.570796
+    line 21 10 0 feed 50 tool_radius 1 source 5
 """
 
 from __future__ import annotations

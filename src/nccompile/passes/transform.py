@@ -9,6 +9,16 @@
 
 A mirror swaps left and right of tool radius correction.  Feeds, D and switch points (a share of their segment)
 stay.
+
+Example:
+    -p transform{rotate=90}
+    --- in
+    % t
+    N10 G1 X10 F50
+    N20 G3 X20 Y10 R10
+    --- out
+    line 0 10 0 feed 50 source 2
+    arc -10 20 0 feed 50 source 3 xy center -10 10 radius 10 start 0 sweep 1.570796
 """
 
 from __future__ import annotations
