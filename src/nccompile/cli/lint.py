@@ -106,6 +106,8 @@ def _without_collection() -> Iterator[None]:
         yield
     finally:
         if collecting:
+            gc.freeze()  # what is alive now counts as old, else the next allocation would look through it all
+            gc.unfreeze()
             gc.enable()
 
 

@@ -37,7 +37,9 @@ class Loop(NamedTuple):
 
 def variable_uses(program: Program) -> list[Use]:
     """All variables in words, in written order; G37 writes and does not count as reading."""
-    uses = []
+    uses: list[Use] = []
+    if "$" not in program.source.text:
+        return uses
     for at, block in enumerate(program.blocks):
         for word in block.words:
             value = word.value

@@ -82,7 +82,7 @@ class Program:
         if not len(hits):
             return []
         ends = np.flatnonzero(self.bytes == LINE_FEED)
-        return [int(line) for line in np.unique(np.searchsorted(ends, hits) + 1)]
+        return sorted(set((np.searchsorted(ends, hits) + 1).tolist()))
 
     @cached_property
     def by_line(self) -> dict[int, Block]:
@@ -115,11 +115,18 @@ class Program:
 
     def instructions(self, *codes: int) -> Iterator[tuple[int, int]]:
         """(index of block, G code) of the blocks that have one of the codes."""
-        wanted = frozenset(codes)
-        for at, word in self.words("G"):
+        for at in sorted(at for code in set(codes) for at in self._by_code.get(code, ())):
             code = self.codes[at]
-            if code in wanted and code is not None and word is first(self.blocks[at], "G"):
-                yield at, code
+            assert code is not None
+            yield at, code
+
+    @cached_property
+    def _by_code(self) -> dict[int | None, list[int]]:
+        """Indices of the blocks by their G code."""
+        found: dict[int | None, list[int]] = defaultdict(list)
+        for at, code in enumerate(self.codes):
+            found[code].append(at)
+        return found
 
     @cached_property
     def moves(self) -> list[int | None]:

@@ -20,7 +20,7 @@ ARC_RADIUS, ARC_START, ARC_SWEEP = 2, 3, 4
 
 def lines_of(path: Toolpath, flags: Flags) -> list[int]:
     """The source lines of flagged segments, each once, rising."""
-    return [int(line) for line in np.unique(path.line[flags])]
+    return sorted(set(path.line[flags].tolist()))
 
 
 def between(path: Toolpath, start: Mark, stop: Mark) -> Flags:

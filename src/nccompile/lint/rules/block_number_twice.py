@@ -24,6 +24,9 @@ class BlockNumberTwice(Rule):
 
     def check(self, program: Program) -> Iterator[Finding]:
         """Looks at numbers with more than one block."""
+        values = [block.number.value for block in program.blocks if block.number is not None]
+        if len(set(values)) == len(values):
+            return
         for number, places in program.numbers.items():
             line = program.blocks[places[0]].line
             for at in places[1:]:

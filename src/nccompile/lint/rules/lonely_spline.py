@@ -24,6 +24,8 @@ class LonelySpline(Rule):
 
     def check(self, program: Program) -> Iterator[Finding]:
         """Looks at the moves around single G5 blocks in written order."""
+        if 5 not in program.moves:
+            return
         moves = [(at, move) for at, move in enumerate(program.moves) if move is not None]
         for place, (at, move) in enumerate(moves):
             before = moves[place - 1][1] if place else 0

@@ -30,7 +30,7 @@ class MissingBlockNumber(Rule):
     def check(self, program: Program) -> Iterator[Finding]:
         """Looks for blocks without N."""
         missing = [block for block in program.blocks if block.number is None and block.words]
-        if missing and not program.numbers:
+        if missing and all(block.number is None for block in program.blocks):
             yield Finding(missing[0].span, "no block has a block number", _HELP)
             return
         for block in missing:

@@ -24,10 +24,10 @@ class NoRadius(Rule):
 
     def check(self, program: Program) -> Iterator[Finding]:
         """Follows D through the blocks in written order."""
-        if program.jumps:
+        starts = dict(program.instructions(41, 42, 51, 52))
+        if program.jumps or not starts:
             return
         radius, known = 0.0, True
-        starts = dict(program.instructions(41, 42, 51, 52))
         for at, block in enumerate(program.blocks):
             word = first(block, "D")
             if word is not None and program.codes[at] not in {36, 37}:

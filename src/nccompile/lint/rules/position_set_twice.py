@@ -26,6 +26,8 @@ class PositionSetTwice(Rule):
 
     def check(self, program: Program) -> Iterator[Finding]:
         """Compares each G92 with the next instruction."""
+        if not any(program.instructions(92)):
+            return
         open_at: int | None = None
         for at, block in enumerate(program.blocks):
             code = program.codes[at]
