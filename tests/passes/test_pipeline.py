@@ -38,6 +38,8 @@ def test_parameters_come_from_the_text() -> None:
         ("move-start", "segment is missing"),
         ("flatten{length=1},transform{x=1}", "transform must run before flatten"),
         ("reverse,reverse", "named twice"),
+        ("round-corners{everywhere},smooth-corners{everywhere}", "cannot both act on the whole path"),
+        ("tool-radius{everywhere},smooth-corners{everywhere}", "cannot both act on the whole path"),
         ("split{segment=1,line=2}", "either segment or line"),
     ],
 )

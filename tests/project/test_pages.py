@@ -13,7 +13,7 @@ PAGES = [page for page in correction.PAGES if page.bad]
 
 
 def _codes(page: Page, program: str) -> set[str]:
-    passes = parse("" if page.code == "NC301" else "tool-radius")
+    passes = parse("" if page.code == "NC301" else "tool-radius,smooth-corners")
     compilation = Compilation(Source("a.nc", program), Options(default_machine(), passes=passes))
     assert sum(len(chunk) for chunk in compilation.planned()) > 0
     return {found.code for found in compilation.diagnostics}

@@ -30,4 +30,14 @@ PAGES: tuple[Page, ...] = (
         "correction in another plane",
         "Tool radius correction acts in X-Y. A curve in Z-X, Y-Z or in space has no offset there.",
     ),
+    Page(
+        "NC304",
+        "correction together with rounding or smoothing",
+        "The passes tool-radius and round-corners or smooth-corners are both turned on, and both would act on this "
+        "stretch. D would be the tool's radius and the rounding at once, and the corners of the offset path would be "
+        "cut, not those of the contour: SoftMotion allows one of them at a time (§3.6). Let one end with G40 or G50 "
+        "before the other starts, or leave one pass out.",
+        "% a\nN10 G41 D1\nN20 G51\nN30 G1 X10 F20\nN40 G1 Y10\nN50 G50\nN60 G40",
+        "% a\nN10 G41 D1\nN20 G1 X10 F20\nN30 G1 Y10\nN40 G40\nN50 G51\nN60 G1 X20\nN70 G1 Y20\nN80 G50",
+    ),
 )

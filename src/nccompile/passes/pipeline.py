@@ -8,7 +8,8 @@
 
 Running order (SoftMotion §3.1, architecture.md): frame transforms, tool radius correction, loop avoidance,
 rounding or smoothing, tidying and fitting, flattening, feed limits.  A specification in another order is
-refused, for each pass relies on what the ones before it leave; only compress may stand anywhere.
+refused, for each pass relies on what the ones before it leave; only compress may stand anywhere.  Tool radius
+correction and rounding or smoothing must not act on the same stretch (SoftMotion §3.6).
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from itertools import pairwise
 from nccompile.errors import UsageError
 from nccompile.passes.avoid_loops import AvoidLoops
 from nccompile.passes.base import Context, Diagnose, Pass, Report
+from nccompile.passes.check_marks import CORNERS, check_together
 from nccompile.passes.compress import Compress
 from nccompile.passes.fit_arcs import FitArcs
 from nccompile.passes.fit_splines import FitSplines
@@ -58,7 +60,13 @@ ORDER: tuple[type[Pass], ...] = (
 
 REGISTRY: dict[str, type[Pass]] = {kind.name: kind for kind in ORDER}
 
-_EXCLUDES = (("round-corners", "smooth-corners"),)
+_EXCLUDES = (
+    ("round-corners", "smooth-corners"),
+    ("tool-radius", "round-corners"),
+    ("tool-radius", "smooth-corners"),
+)
+"""Passes that cannot both act on the whole path: NC304 of `check_marks` finds stretches of the path."""
+
 _REPEATABLE = ("transform", "split", "compress")
 _PASS = re.compile(r"\s*(?P<name>[A-Za-z][\w-]*)\s*(?:\{(?P<body>[^{}]*)\})?\s*(?P<end>,|$)")
 
@@ -101,8 +109,11 @@ class Pipeline:
         self.reports[:] = [Report(p.name) for p in self.passes]
         stream: Iterator[Toolpath] = iter(chunks)
         clock = _Clock()
+        corners = {p.name: _whole(self.passes, p.name) for p in self.passes if p.name in CORNERS}
         for p, report in zip(self.passes, self.reports, strict=True):
             context = Context(report, feed, diagnose, measure)
+            if p.name == ToolRadius.name and corners:
+                stream = check_together(stream, _whole(self.passes, p.name), corners, context.find)
             stream = clock.timed(report, p.apply(clock.outside(report, stream), context))
             if after is not None:
                 stream = after(p.name, stream)
