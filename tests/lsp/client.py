@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -41,7 +42,11 @@ class Client:
         self.versions: dict[str, int] = {}
         self.texts: dict[str, str] = {}
         self.last_id = 0
-        threading.Thread(target=self._read, daemon=True).start()
+        self.said: deque[str] = deque(maxlen=50)
+        self._listener = threading.Thread(target=self._listen, daemon=True)
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._listener.start()
+        self._reader.start()
         general = {} if encodings is None else {"positionEncodings": encodings}
         capabilities = {
             "general": general,
@@ -63,6 +68,18 @@ class Client:
             if not length:
                 return
             self.incoming.put(json.loads(stream.read(length)))
+
+    def _listen(self) -> None:
+        """Takes what the server logs: a full pipe would stop it."""
+        stream = self.process.stderr
+        assert stream is not None
+        for line in stream:
+            self.said.append(line.decode())
+
+    def join(self) -> None:
+        """Waits for the ends of what the server wrote."""
+        for thread in (self._reader, self._listener):
+            thread.join(PATIENCE)
 
     def send(self, message: Json) -> None:
         stream = self.process.stdin
@@ -111,11 +128,10 @@ class Client:
                 code = self.process.poll()
                 if code is None and time.monotonic() < until:
                     continue
-                stream = self.process.stderr
-                assert stream is not None
-                said = stream.read().decode() if code is not None else ""
+                if code is not None:
+                    self._listener.join(PATIENCE)
                 state = "keeps silent" if code is None else f"ended with code {code}"
-                raise AssertionError(f"the server {state}: {said[-2000:]}") from None
+                raise AssertionError(f"the server {state}: {''.join(self.said)}") from None
 
     def open(self, uri: str, text: str) -> None:
         self.versions[uri], self.texts[uri] = 1, text
@@ -154,6 +170,10 @@ class Client:
         ]
         return cast(list[Json], shown[-1]) if shown else []
 
+    def forget(self, uri: str) -> None:
+        """Drops what was said of a document."""
+        self.notifications = [m for m in self.notifications if m["params"].get("uri") != uri]
+
     def at(self, method: str, uri: str, line: int, character: int, **more: Any) -> Any:
         place = {"line": line, "character": character}
         return self.request(method, {"textDocument": {"uri": uri}, "position": place, **more})
@@ -181,6 +201,7 @@ def serving(encodings: list[str] | None = None) -> Iterator[Client]:
     finally:
         client.process.kill()
         client.process.wait()
+        client.join()
         for stream in (client.process.stdin, client.process.stdout, client.process.stderr):
             assert stream is not None
             stream.close()
