@@ -72,16 +72,18 @@ def _write_zip(
     axes: tuple[str, ...] = ("X", "Y", "Z")
     start: Floats = np.zeros(3)
     names: tuple[str, ...] = ()
+    third_order = False
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for number, chunk in enumerate(chunks):
             if not chunk.is_planned:
                 raise ValueError("an OutQueue holds planned toolpaths only")
             if number == 0:
-                axes, start = chunk.axes, chunk.start
+                axes, start, third_order = chunk.axes, chunk.start, chunk.is_third_order
             table.append(counts(chunk))
             names = max(names, chunk.names, key=len)
             gatherer.add(chunk)
-            for member, column in zip(members(number, table[-1], len(axes)), columns(chunk), strict=True):
+            layout = members(number, table[-1], len(axes), third_order)
+            for member, column in zip(layout, columns(chunk), strict=True):
                 entry = npz_entry(member.name)
                 entry.file_size = member.size
                 with archive.open(entry, "w") as target:
@@ -90,7 +92,7 @@ def _write_zip(
         if not table:
             gatherer.add(Toolpath.empty())
         totals = gatherer.totals(job_time())
-        meta = Meta(axes, tuple(start.tolist()), provenance, totals, names, tuple(table))
+        meta = Meta(axes, tuple(start.tolist()), provenance, totals, names, tuple(table), third_order)
         archive.writestr(npz_entry(META), meta.to_json())
     return meta
 
@@ -141,7 +143,7 @@ class Queue:
         self, archive: zipfile.ZipFile, number: int, rows: Counts, start: Floats, first: int
     ) -> Toolpath:
         arrays: dict[str, Any] = {}
-        for member in members(number, rows, len(self.axes)):
+        for member in members(number, rows, len(self.axes), self.meta.third_order):
             name = member.name.partition("/")[2].removesuffix(".npy")
             arrays[name] = _load(archive, self.path, member)
         curves = {k.partition(".")[2]: arrays.pop(k) for k in list(arrays) if k.startswith("curves.")}
@@ -177,7 +179,7 @@ def read(path: Path) -> Queue:
     expected = {
         member.name: member.size
         for number, rows in enumerate(meta.chunks)
-        for member in members(number, rows, len(meta.axes))
+        for member in members(number, rows, len(meta.axes), meta.third_order)
     }
     _compare(path, expected, {name: size for name, size in sizes.items() if name != META})
     if meta.totals.segments != sum(rows.segments for rows in meta.chunks):

@@ -41,6 +41,8 @@ def _finite(chunk: Toolpath) -> Iterator[str]:
         name: getattr(chunk, name)
         for name in ("target", "length", "feed", "accel", "decel", "radius", "v_limit", "v_junction", "v_end")
     }
+    if chunk.is_third_order:
+        columns |= {"a_end": chunk.a_end, "jerk": chunk.jerk}
     columns["curve table"] = chunk.curves.parameters
     columns |= {f"event {name}": getattr(chunk.events, name) for name in ("position", "k", "l")}
     for name, column in columns.items():
@@ -57,6 +59,8 @@ def _signs(chunk: Toolpath) -> Iterator[str]:
     for name in ("feed", "accel", "decel", "v_limit"):
         if (getattr(chunk, name)[moving] <= 0).any():
             yield f"its column {name} is not positive for every move: the queue was not planned"
+    if chunk.jerk is not None and (chunk.jerk[moving] <= 0).any():
+        yield "its column jerk is not positive for every move: the queue was not planned"
     if len(chunk) and int(chunk.mark.max()) > _ALL_MARKS:
         yield "its column mark holds unknown marks"
     if len(chunk) and int((chunk.profile & 0x7FFF).max()) >> len(

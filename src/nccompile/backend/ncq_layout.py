@@ -37,6 +37,8 @@ _SEGMENT_COLUMNS = {
     "v_junction": "<f8",
     "v_end": "<f8",
 }
+_THIRD_ORDER_COLUMNS = {"a_end": "<f8", "jerk": "<f8"}
+"""Columns that only third-order plans have."""
 _CURVE_COLUMNS = {"plane": "|u1", "parameters": "<f8"}
 _EVENT_COLUMNS = {
     "segment": "<i4",
@@ -81,10 +83,14 @@ def counts(chunk: Toolpath) -> Counts:
     return Counts(len(chunk), len(chunk.curves), len(chunk.events))
 
 
-def members(chunk: int, rows: Counts, axes: int) -> Iterator[Member]:
+def _segment_columns(third_order: bool) -> dict[str, str]:
+    return _SEGMENT_COLUMNS | _THIRD_ORDER_COLUMNS if third_order else _SEGMENT_COLUMNS
+
+
+def members(chunk: int, rows: Counts, axes: int, third_order: bool) -> Iterator[Member]:
     """The members of a chunk in their order in the file; tables without rows have none."""
     place = folder(chunk)
-    for name, dtype in _SEGMENT_COLUMNS.items():
+    for name, dtype in _segment_columns(third_order).items():
         shape = (rows.segments, axes) if name == "target" else (rows.segments,)
         yield _member(f"{place}/{name}.npy", dtype, shape)
     if rows.curves:
@@ -98,7 +104,7 @@ def members(chunk: int, rows: Counts, axes: int) -> Iterator[Member]:
 
 def columns(chunk: Toolpath) -> Iterator[npt.NDArray[Any]]:
     """The arrays of a planned chunk in the order of `members`."""
-    for name in _SEGMENT_COLUMNS:
+    for name in _segment_columns(chunk.is_third_order):
         yield getattr(chunk, name)
     if len(chunk.curves):
         for name in _CURVE_COLUMNS:

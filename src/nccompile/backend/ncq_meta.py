@@ -3,7 +3,7 @@
 {"format": "nccompile-outqueue", "version": 1, "producer": "nccompile 0.1.0",
  "axes": ["X", "Y", "Z"], "units": {...}, "start": {"X": 0.0, ...},
  "source": {"name": ..., "sha256": ...}, "machine": {"name": ..., "sha256": ...},
- "planning": {"angle_tolerance": 0.1, "time_law": "trapezoid"},
+ "planning": {"angle_tolerance": 0.1, "time_law": "trapezoid", "third_order": true if so},
  "totals": {"segments": ..., "length": ..., "rapid_length": ..., "job_time": ..., "box": ...,
             "switches": ..., "m_functions": [...]},
  "names": [...], "chunks": [[segments, curves, events], ...]}
@@ -53,7 +53,10 @@ class Provenance:
 
 @dataclass(frozen=True, slots=True)
 class Meta:
-    """The description of an OutQueue; `start` [mm or deg] has one value an axis."""
+    """The description of an OutQueue; `start` [mm or deg] has one value an axis.
+
+    third_order: its chunks have the columns a_end and jerk.
+    """
 
     axes: tuple[str, ...]
     start: tuple[float, ...]
@@ -61,6 +64,7 @@ class Meta:
     totals: Totals
     names: tuple[str, ...]
     chunks: tuple[Counts, ...]
+    third_order: bool = False
     producer: str = f"nccompile {VERSION}"
 
     def as_dict(self) -> dict[str, Any]:
@@ -76,7 +80,8 @@ class Meta:
             "source": {"name": p.source, "sha256": p.source_sha256},
             "machine": {"name": p.machine, "sha256": p.machine_sha256},
             "planning": {"angle_tolerance": p.angle_tolerance, "time_law": p.time_law}
-            | ({"smoothing": p.smoothing} if p.smoothing else {}),
+            | ({"smoothing": p.smoothing} if p.smoothing else {})
+            | ({"third_order": True} if self.third_order else {}),
             "totals": asdict(self.totals),
             "names": list(self.names),
             "chunks": [list(c) for c in self.chunks],
@@ -125,6 +130,7 @@ class Meta:
             totals=_totals(content["totals"], axes),
             names=tuple(_text(n) for n in content["names"]),
             chunks=tuple(Counts(*(_count(v) for v in row)) for row in content["chunks"]),
+            third_order=_flag(planning.get("third_order", False)),
             producer=_text(content["producer"]),
         )  # fmt: skip
 
@@ -172,6 +178,12 @@ def _not_negative(value: object) -> float:
 def _whole(value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, int):
         raise ValueError(f"{value!r} is not a whole number")
+    return value
+
+
+def _flag(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise ValueError(f"{value!r} is neither true nor false")
     return value
 
 

@@ -42,12 +42,15 @@ def rows_of(path: Toolpath) -> k.Rows:
     assert path.v_limit is not None
     assert path.v_junction is not None
     assert path.v_end is not None
+    none = np.zeros(len(path))
+    a_end = none if path.a_end is None else path.a_end
+    jerk = none if path.jerk is None else path.jerk
     e = path.events
     borders = np.searchsorted(e.segment, np.arange(len(path) + 1)).astype(np.int32)
     return k.Rows(
         path.kind, path.starts(), path.target, path.curve, path.curves.plane, path.curves.parameters,
-        path.length, path.feed, path.v_limit, path.v_junction, path.v_end, path.accel, path.decel, path.profile,
-        path.line, borders[:-1], borders[1:], e.kind, e.number, e.position, e.k, np.empty(len(path)),
+        path.length, path.feed, path.v_limit, path.v_junction, path.v_end, a_end, path.accel, path.decel, jerk,
+        path.profile, path.line, borders[:-1], borders[1:], e.kind, e.number, e.position, e.k, np.empty(len(path)),
     )  # fmt: skip
 
 

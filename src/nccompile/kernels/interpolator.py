@@ -73,7 +73,8 @@ class Rows(NamedTuple):
     """Planned segments as the interpolator reads them; rows head..tail-1 are valid.
 
     kind u1 (n,); start, target f8 (n, k); curve i4 (n,) row of `plane` u1 (m,) and `parameters` f8 (m, 12) or
-    -1; length, feed, v_limit, v_junction, v_end, accel, decel f8 (n,); profile u2 (n,); line i4 (n,);
+    -1; length, feed, v_limit, v_junction, v_end, a_end, accel, decel, jerk f8 (n,), jerk 0 where the plan is not of
+    third order; profile u2 (n,); line i4 (n,);
     events: event_begin, event_end i4 (n,) range of a row in event_kind u1, event_number i4, event_position,
     event_k f8.  v_now f8 (n,) is scratch: the end velocities in force (see `limit_ends`).
     """
@@ -89,8 +90,10 @@ class Rows(NamedTuple):
     v_limit: Floats
     v_junction: Floats
     v_end: Floats
+    a_end: Floats
     accel: Floats
     decel: Floats
+    jerk: Floats
     profile: npt.NDArray[np.uint16]
     line: Ints
     event_begin: Ints

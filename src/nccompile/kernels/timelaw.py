@@ -21,7 +21,17 @@ from math import pi, sin, sqrt
 
 from nccompile.kernels import kernel
 
-__all__ = ["SIGMOID", "TRAPEZOID", "law_distance", "law_times", "law_velocity", "peak_factor"]
+__all__ = [
+    "SIGMOID",
+    "TRAPEZOID",
+    "jerk_distance",
+    "jerk_time",
+    "jerk_velocity",
+    "law_distance",
+    "law_times",
+    "law_velocity",
+    "peak_factor",
+]
 
 TRAPEZOID = 0
 SIGMOID = 1
@@ -121,3 +131,28 @@ def law_velocity(
         root = sin(0.5 * pi * part)
         return va + (vb - va) * root * root
     return va + (vb - va) * part
+
+
+@kernel
+def jerk_time(length: float, v0: float, a0: float, a1: float) -> float:
+    """Duration of a constant jerk over `length` from velocity v0 and acceleration a0 to acceleration a1.
+
+    L = v0 T + (2 a0 + a1) T² / 6     T = 2 L / (v0 + sqrt(v0² + 2/3 (2 a0 + a1) L))     jerk (a1 - a0) / T
+
+    0 if the path does not get that far.
+    """
+    square = v0 * v0 + 2.0 / 3.0 * (2.0 * a0 + a1) * length
+    below = v0 + sqrt(square) if square > 0.0 else v0
+    return 2.0 * length / below if below > 0.0 else 0.0
+
+
+@kernel
+def jerk_distance(t: float, v0: float, a0: float, jerk: float) -> float:
+    """Distance covered `t` seconds after the start of a constant jerk."""
+    return t * (v0 + t * (0.5 * a0 + t * jerk / 6.0))
+
+
+@kernel
+def jerk_velocity(t: float, v0: float, a0: float, jerk: float) -> float:
+    """Velocity `t` seconds after the start of a constant jerk."""
+    return v0 + t * (a0 + 0.5 * t * jerk)

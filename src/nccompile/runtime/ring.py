@@ -99,8 +99,10 @@ class _Bank:
             v_limit=np.zeros(room),
             v_junction=np.zeros(room),
             v_end=np.zeros(room),
+            a_end=np.zeros(room),
             accel=np.zeros(room),
             decel=np.zeros(room),
+            jerk=np.zeros(room),
             profile=np.zeros(room, np.uint16),
             line=np.zeros(room, ints),
             event_begin=np.zeros(room, ints),
@@ -256,6 +258,9 @@ class RingBuffer:
         to = slice(self._tail, self._tail + end - begin)
         for name in _PLAIN:
             getattr(rows, name)[to] = getattr(chunk, name)[begin:end]
+        for name in ("a_end", "jerk"):
+            column = getattr(chunk, name)
+            getattr(rows, name)[to] = 0.0 if column is None else column[begin:end]
         rows.start[self._tail] = chunk.start if begin == 0 else chunk.target[begin - 1]
         rows.start[self._tail + 1 : to.stop] = chunk.target[begin : end - 1]
         curve = chunk.curve[begin:end]

@@ -7,7 +7,7 @@ starts at `Toolpath.start`.  A jump without motion (G92) is a segment of its own
 gap.  Units: mm, mm/s, mm/s², radians inside the curve table; rotary axes (A, B, C) in degrees.
 
     columns   one row a segment: kind, target, curve, length, feed, accel, decel, mark, radius, profile, line
-    planned   v_limit, v_junction, v_end (absent before velocity planning)
+    planned   v_limit, v_junction, v_end (absent before velocity planning), and a_end, jerk (third-order plans only)
     curves    rows for segments that are not straight, found by the column `curve`
     events    switch points, M functions and dwells, keyed by the segment's row in this chunk
 
@@ -183,6 +183,8 @@ class Toolpath:
     geometry allow on the segment whatever the feed, the same at its end, and the planned velocity at its end;
     in a planned path `feed`, `accel` and `decel` hold the values in force, all > 0 where the segment moves, and
     the segment runs at min(override * feed, v_limit);
+    a_end [mm/s²], jerk [mm/s³]: f8 (n,), both or none: path acceleration at the end of a segment that is run with a
+    constant jerk, and the greatest path jerk allowed on it (> 0 where the segment moves);
     first: index of row 0 in the whole path;  names: what `Events.o` points to.
     """
 
@@ -204,6 +206,8 @@ class Toolpath:
     v_limit: Floats | None = None
     v_junction: Floats | None = None
     v_end: Floats | None = None
+    a_end: Floats | None = None
+    jerk: Floats | None = None
     first: int = 0
     names: tuple[str, ...] = ()
 
@@ -223,6 +227,11 @@ class Toolpath:
     def is_planned(self) -> bool:
         """Whether velocities have been planned."""
         return self.v_end is not None
+
+    @property
+    def is_third_order(self) -> bool:
+        """Whether the segments are planned with a constant jerk each (columns a_end and jerk)."""
+        return self.a_end is not None
 
     @property
     def end(self) -> Floats:
@@ -269,6 +278,8 @@ class Toolpath:
             v_limit=None if self.v_limit is None else self.v_limit[pick],
             v_junction=None if self.v_junction is None else self.v_junction[pick],
             v_end=None if self.v_end is None else self.v_end[pick],
+            a_end=None if self.a_end is None else self.a_end[pick],
+            jerk=None if self.jerk is None else self.jerk[pick],
             first=self.first + begin,
             names=self.names,
         )  # fmt: skip
@@ -281,6 +292,7 @@ class Toolpath:
         offsets = np.cumsum([0] + [len(c) for c in chunks])
         curve_offsets = np.cumsum([0] + [len(c.curves) for c in chunks])
         planned = all(c.is_planned for c in chunks)
+        third_order = all(c.is_third_order for c in chunks)
 
         def stack(name: str) -> Any:
             return np.concatenate([getattr(c, name) for c in chunks])
@@ -305,6 +317,8 @@ class Toolpath:
             v_limit=stack("v_limit") if planned else None,
             v_junction=stack("v_junction") if planned else None,
             v_end=stack("v_end") if planned else None,
+            a_end=stack("a_end") if third_order else None,
+            jerk=stack("jerk") if third_order else None,
             first=chunks[0].first,
             names=max((c.names for c in chunks), key=len),
             **{name: stack(name) for name in _PLAIN},

@@ -15,7 +15,8 @@
 A row starts with the kind and the end position; then pairs of a word and its value follow, where what is left
 out is 0.  `names` are numbered from 0 in the order of their lines, which stand before the rows that use them;
 events follow their row.  A planned path has `planned` in its first line and the words v_limit, v_junction and
-v_end in its rows.  `first` is written if it is not 0.  Blank lines and what follows a # are ignored.
+v_end in its rows, one of third order `planned third_order` and the words a_end and jerk too.  `first` is written
+if it is not 0.  Blank lines and what follows a # are ignored.
 
 Numbers are Python's shortest exact ones (repr).  The parser gives back the columns bit by bit, provided that
 the rows of the curve table are in the order of their segments (an invariant, see `verify`).
@@ -41,6 +42,12 @@ _EVENT_WORDS = {kind: word for word, kind in _EVENTS.items()}
 _REALS = ("length", "feed", "accel", "decel", "radius")
 _WHOLE = ("mark", "profile", "line")
 _PLANNED = ("v_limit", "v_junction", "v_end")
+_FORMS = {
+    "toolpath 1": (),
+    "toolpath 1 planned": _PLANNED,
+    "toolpath 1 planned third_order": (*_PLANNED, "a_end", "jerk"),
+}
+"""First lines, and the planned columns that rows have then."""
 _DTYPES = {"mark": np.uint16, "profile": np.uint16, "line": np.int32}
 _COLUMN_WORDS = {"radius": "tool_radius", "line": "source"}
 """Columns under another word: `radius` is that of an arc, `line` a kind."""
@@ -67,12 +74,12 @@ def format_toolpaths(chunks: Iterable[Toolpath]) -> Iterator[str]:
     for chunk in chunks:
         if head is None:
             head = chunk
-            yield "toolpath 1" + (" planned" if chunk.is_planned else "")
+            yield next(form for form, columns in _FORMS.items() if columns == _planned_columns(chunk))
             yield "axes " + " ".join(chunk.axes)
             yield "start " + _numbers(chunk.start.tolist())
             if chunk.first:
                 yield f"first {chunk.first}"
-        if (chunk.axes, chunk.is_planned) != (head.axes, head.is_planned):
+        if (chunk.axes, _planned_columns(chunk)) != (head.axes, _planned_columns(head)):
             raise UsageError("the chunks differ in their axes or in being planned: they are not one path")
         for name in chunk.names[named:]:
             yield f"name {json.dumps(name)}"
@@ -80,10 +87,16 @@ def format_toolpaths(chunks: Iterable[Toolpath]) -> Iterator[str]:
         yield from _rows(chunk)
 
 
+def _planned_columns(chunk: Toolpath) -> tuple[str, ...]:
+    """The planned columns that a chunk has."""
+    if not chunk.is_planned:
+        return ()
+    return _FORMS["toolpath 1 planned third_order"] if chunk.is_third_order else _PLANNED
+
+
 def _rows(chunk: Toolpath) -> Iterator[str]:
     words = [(_COLUMN_WORDS.get(n, n), getattr(chunk, n).tolist()) for n in (*_REALS, *_WHOLE)]
-    if chunk.is_planned:
-        words += [(name, getattr(chunk, name).tolist()) for name in _PLANNED]
+    words += [(name, getattr(chunk, name).tolist()) for name in _planned_columns(chunk)]
     targets = chunk.target.tolist()
     kinds = [name for name, _ in sorted(_KINDS.items(), key=lambda item: item[1])]
     curves = _curves(chunk)
@@ -179,7 +192,7 @@ class _Reader:
     def __init__(self) -> None:
         self.axes: tuple[str, ...] = ()
         self.start: list[float] = []
-        self.planned: bool | None = None
+        self.planned: tuple[str, ...] | None = None
         self.first = 0
         self.names: list[str] = []
         self.kinds: list[int] = []
@@ -193,9 +206,9 @@ class _Reader:
         """Reads one line without comment."""
         head, _, rest = line.partition(" ")
         if self.planned is None:
-            if line not in ("toolpath 1", "toolpath 1 planned"):
+            if line not in _FORMS:
                 raise ValueError('a toolpath text starts with "toolpath 1" or "toolpath 1 planned"')
-            self.planned = line.endswith("planned")
+            self.planned = _FORMS[line]
         elif head == "axes":
             self.axes = tuple(rest.split())
         elif head == "start":
@@ -234,8 +247,7 @@ class _Reader:
         if len(parts) % 2:
             raise IndexError
         allowed = {_COLUMN_WORDS.get(name, name): name for name in (*_REALS, *_WHOLE)}
-        if self.planned:
-            allowed |= {name: name for name in _PLANNED}
+        allowed |= {name: name for name in self.planned or ()}
         words: dict[str, float] = {}
         for word, value in zip(parts[::2], parts[1::2], strict=True):
             name = allowed[word]
@@ -277,7 +289,7 @@ class _Reader:
             first=self.first,
             names=tuple(self.names),
             **{name: column(name) for name in (*_REALS, *_WHOLE)},
-            **{name: column(name) if self.planned else None for name in _PLANNED},
+            **{name: column(name) for name in self.planned},
         )
 
 

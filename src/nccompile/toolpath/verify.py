@@ -48,6 +48,7 @@ _EVENT_DTYPES = {
     "l": np.float64, "o": np.int32,
 }  # fmt: skip
 _PLANNED = ("v_limit", "v_junction", "v_end")
+_THIRD_ORDER = ("a_end", "jerk")
 
 _USED = {Kind.ARC: 5, Kind.ELLIPSE: 7}
 """Parameters in use; a polynomial has 12 in space and 8 in a plane."""
@@ -55,6 +56,9 @@ _USED = {Kind.ARC: 5, Kind.ELLIPSE: 7}
 _MARKS = int(sum(Mark))
 _VELOCITY_RATIO = 1e-9
 """Planned squares of velocities may be off by this part: they pass through a root and back."""
+
+_LAW_RATIO = 1e-6
+"""The same for accelerations, jerks and velocities of a third-order plan."""
 
 _CURVED = (Kind.ARC, Kind.ELLIPSE, Kind.POLYNOMIAL)
 _WAITS = (Kind.DWELL, Kind.M_FUNCTION)
@@ -107,7 +111,7 @@ def _check_successor(before: Toolpath, chunk: Toolpath) -> None:
         )
     if chunk.names[: len(before.names)] != before.names:
         raise InvalidToolpath(f"chunk at segment {chunk.first}: its names do not continue those before")
-    if chunk.is_planned != before.is_planned:
+    if (chunk.is_planned, chunk.is_third_order) != (before.is_planned, before.is_third_order):
         raise InvalidToolpath(f"chunk at segment {chunk.first}: only one of two chunks is planned")
 
 
@@ -145,13 +149,14 @@ def _check_shapes(chunk: Toolpath) -> None:
     shapes |= {
         f"events.{name}": (getattr(e, name), (len(e),), dtype) for name, dtype in _EVENT_DTYPES.items()
     }
-    planned = [getattr(chunk, name) for name in _PLANNED]
-    if any(column is None for column in planned) != all(column is None for column in planned):
-        raise InvalidToolpath(
-            f"chunk at segment {chunk.first}: only some of {', '.join(_PLANNED)} are planned"
-        )
-    if chunk.is_planned:
-        shapes |= {name: (getattr(chunk, name), (n,), np.float64) for name in _PLANNED}
+    for names in (_PLANNED, _THIRD_ORDER):
+        missing = [getattr(chunk, name) is None for name in names]
+        if any(missing) != all(missing):
+            raise InvalidToolpath(
+                f"chunk at segment {chunk.first}: only some of {', '.join(names)} are planned"
+            )
+        if not any(missing):
+            shapes |= {name: (getattr(chunk, name), (n,), np.float64) for name in names}
     for name, (column, shape, dtype) in shapes.items():
         if column.shape != shape or column.dtype != dtype:
             raise InvalidToolpath(
@@ -319,3 +324,31 @@ def _check_plan(chunk: Toolpath, v_before: float | None) -> None:
     brake = v * v + 2.0 * chunk.decel * chunk.length
     _forbid(chunk, known & (v * v > reach * slack), "v_end cannot be reached from the velocity before")
     _forbid(chunk, known & (start * start > brake * slack), "the velocity before cannot be braked to v_end")
+    if chunk.is_third_order:
+        _check_third_order(chunk, start, known)
+
+
+def _check_third_order(chunk: Toolpath, start: Floats, known: Flags) -> None:
+    """Accelerations and jerks inside the segment's own, and velocities that they lead to."""
+    assert chunk.v_end is not None
+    assert chunk.a_end is not None
+    assert chunk.jerk is not None
+    a1, jerk, v, moving = chunk.a_end, chunk.jerk, chunk.v_end, chunk.length > 0.0
+    _forbid(chunk, ~np.isfinite(a1), "a_end is not finite")
+    _forbid(chunk, moving & ~((jerk > 0.0) & np.isfinite(jerk)), "planned jerk is not above 0")
+    _forbid(chunk, ~moving & (a1 != 0.0), "an acceleration where the path stands")
+    room = 1.0 + _LAW_RATIO
+    _forbid(
+        chunk, moving & ((a1 > chunk.accel * room) | (-a1 > chunk.decel * room)), "a_end beyond the limits"
+    )
+    a0 = np.concatenate([[0.0], a1[:-1]])[: len(chunk)]
+    known = known & moving
+    if len(known) and chunk.first > 0:
+        known[0] = False  # the acceleration before is not at hand
+    length = chunk.length
+    root = np.sqrt(np.maximum(start * start + 2.0 / 3.0 * (2.0 * a0 + a1) * length, 0.0))
+    time = np.divide(2.0 * length, start + root, out=np.zeros_like(v), where=known & (start + root > 0.0))
+    _forbid(chunk, known & (time <= 0.0), "the segment cannot be run with a constant jerk")
+    off = np.abs(start + 0.5 * (a0 + a1) * time - v)
+    _forbid(chunk, known & (off > _LAW_RATIO * np.maximum(v, start)), "v_end is not where the jerk leads to")
+    _forbid(chunk, known & (np.abs(a1 - a0) > jerk * time * room), "a jerk beyond the limit")
