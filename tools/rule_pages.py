@@ -16,6 +16,7 @@ from nccompile.codes import PAGES
 from nccompile.codes.page import Page
 from nccompile.lint.pages import markdown, sheet_of
 from nccompile.lint.registry import RULES
+from nccompile.lint.remedies import REMEDIES
 
 ROOT = Path(__file__).parents[1]
 MODULE = ROOT / "src" / "nccompile" / "codes" / "lint_rules.py"
@@ -61,7 +62,7 @@ def documents() -> dict[str, str]:
     for code, page in pages().items():
         rule = rules.get(code)
         if rule is None:
-            texts[f"{code}.md"] = markdown(page)
+            texts[f"{code}.md"] = markdown(page, REMEDIES[code].says if code in REMEDIES else "")
         else:
             texts[f"{code}.md"] = markdown(page, sheet_of(rule).fix, rule.severity, rule.default)
     rows = [

@@ -8,18 +8,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nccompile.codes import PAGES
 from nccompile.diagnostics import Diagnostics
 from nccompile.errors import UsageError
 from nccompile.lint.base import Edit, Fix
 from nccompile.lint.engine import Report, lint
 from nccompile.lint.fix import apply_fixes
 from nccompile.lint.fmt import format_text, renumbered
+from nccompile.lint.remedies import REMEDIES
 from nccompile.lint.rewrite import apply_edits, encoding_of, same_path, split_lines
 from nccompile.parser import parse
 from nccompile.source import Source
 from nccompile.toolchain import Compilation
 from nccompile.toolpath import Toolpath
-from tests.lint.programs import EVERY_RULE, OPTIONS, SAMPLES, checked, programs, read
+from tests.lint.programs import EVERY_RULE, OPTIONS, SAMPLES, checked, codes, programs, read
 
 
 def path_of(text: str) -> list[Toolpath]:
@@ -31,6 +33,12 @@ def errors_of(text: str) -> list[str]:
     for _ in compilation.decoded():
         pass
     return [found.code for found in compilation.diagnostics if found.severity == "error"]
+
+
+def keeps_the_path(before: str, after: str) -> bool:
+    """Whether the paths are the same, and their source lines too but for lines put before the program."""
+    added = len(split_lines(after)) - len(split_lines(before))
+    return same_path(path_of(before), path_of(after), shift=added)
 
 
 def fixed(text: str) -> str:
@@ -45,6 +53,15 @@ def fixed(text: str) -> str:
         ("% a\nN10 G1\x0cX1\vF20", "% a\nN10 G1 X1 F20"),
         ("% a\r\nN10 G1 X1 F20\r\n/N20 (end)\r\n", "% a\r\nN10 G1 X1 F20\r\nN20 (end)\r\n"),
         ("% a\nN10 G1 X1 Y2 F20\nN20 G1X2Y2\nN30 G1 X3 Y2", "% a\nN10 G1 X1 Y2 F20\nN20 G1 X2\nN30 G1 X3"),
+        ("(cut)\r\nN10 G1 X1 F20", "% a\r\n(cut)\r\nN10 G1 X1 F20"),
+        ("% a\nN10 GNone X1 R2 F20", "% a\nN10 X1 F20"),
+        ("% a\nN10 G1 X1 F20\nG1 X2", "% a\nN10 G1 X1 F20\nN20 G1 X2"),
+        ("G1 X1 F20\n/G1 X2\n", "% a\nN10 G1 X1 F20\n/N20 G1 X2\n"),
+        (
+            "% a\nN5 G36 O$n$ D2\nN7 G1 X1 F20\nN6 G1 X0\nN8 G37 O$n$ D-1\nN9 G20 L7 K$n$",
+            "% a\nN10 G36 O$n$ D2\nN20 G1 X1 F20\nN30 G1 X0\nN40 G37 O$n$ D-1\nN50 G20 L20 K$n$",
+        ),
+        ("% a\nN10 G1 X1 F20\nN10 G1 X2\nN30 G20 L10 K0", "% a\nN10 G1 X1 F20\nN10 G1 X2\nN30 G20 L10 K0"),
         ("% a\nN10 G91\nN20 G1 X1 Y1 F20\nN30 G1 X1 Y2", "% a\nN10 G91\nN20 G1 X1 Y1 F20\nN30 G1 X1 Y2"),
     ],
 )
@@ -52,11 +69,20 @@ def test_fixes(before: str, after: str) -> None:
     assert fixed(before) == after
 
 
+@pytest.mark.parametrize("code", REMEDIES)
+def test_findings_of_compile_with_a_fix(code: str) -> None:
+    text = PAGES[code].bad
+    assert code in codes(text)
+    after = fixed(text)
+    assert code not in codes(after)
+    assert keeps_the_path(text, after)
+
+
 @settings(max_examples=60, deadline=None)
 @given(programs)
 def test_fixes_keep_the_path_and_a_second_run_changes_nothing(text: str) -> None:
     once = fixed(text)
-    assert same_path(path_of(text), path_of(once))
+    assert keeps_the_path(text, once)
     assert errors_of(once) == errors_of(text)
     assert fixed(once) == once
 
@@ -64,7 +90,7 @@ def test_fixes_keep_the_path_and_a_second_run_changes_nothing(text: str) -> None
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
 def test_fixes_keep_the_path_of_samples(path: Path) -> None:
     source = read(path)
-    assert same_path(path_of(source.text), path_of(fixed(source.text)))
+    assert keeps_the_path(source.text, fixed(source.text))
 
 
 def test_a_fix_that_would_change_the_path_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -44,7 +44,10 @@ class Edit(NamedTuple):
 
 
 class Fix(NamedTuple):
-    """A safe change: the toolpath stays the same to the bit.  `title` says what is done, as an order."""
+    """A safe change: the toolpath stays the same to the bit.  `title` says what is done, as an order.
+
+    Lines may be added only before the first one.
+    """
 
     title: str
     edits: tuple[Edit, ...]
@@ -75,3 +78,7 @@ class Rule(ABC):
     @abstractmethod
     def check(self, program: Program) -> Iterator[Finding]:
         """The findings in a program, in any order."""
+
+    def fix_all(self, program: Program) -> Fix | None:
+        """One fix for all findings together; the first of them carries it."""
+        return None

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 from nccompile.diagnostics import Diagnostic, Diagnostics, Severity
-from nccompile.lint.base import Fix
+from nccompile.lint.base import Fix, Rule
 from nccompile.lint.config import Config
 from nccompile.lint.ignores import Ignores
 from nccompile.lint.program import Cancelled, Program, prepare
 from nccompile.lint.registry import RULES
+from nccompile.lint.remedies import remedy
 from nccompile.source import Source
 from nccompile.toolchain import Options
 
@@ -19,6 +21,11 @@ __all__ = ["Report", "Selected", "check", "lint"]
 
 ALL = 2**62
 """A limit that is none."""
+
+ALIKE = 5
+"""Notes of a kind that are shown one by one; more of them are the habit of a post-processor."""
+
+Fixable: TypeAlias = tuple[Diagnostic, Fix | None]
 
 
 @dataclass
@@ -74,17 +81,17 @@ def lint(
 ) -> Report:
     """Checks a program.
 
-    Args:     limit: findings kept of each code, those of `compile` if None, all if 0;  wanted: asked now and
-              then whether to go on.
+    Args:     limit: findings kept of each code, all if 0; if None those of `compile`, and of notes beyond `ALIKE`
+              one that counts them;  wanted: asked now and then whether to go on.
     Raises:   Cancelled: it was not wanted any more.
     """
     most = ALL if limit == 0 else limit
     goes_on = {} if wanted is None else {"wanted": wanted}
-    return check(prepare(source, options, config, limit=most, **goes_on))
+    return check(prepare(source, options, config, limit=most, **goes_on), gather=limit is None)
 
 
-def check(program: Program) -> Report:
-    """Runs the selected rules over a prepared program."""
+def check(program: Program, *, gather: bool) -> Report:
+    """Runs the selected rules over a prepared program; with `gather` many notes of a kind become one."""
     compiled = program.diagnostics
     selected = Selected(program.config, Ignores(program.blocks))
     report = Report(program, Diagnostics(compiled.limit))
@@ -93,6 +100,7 @@ def check(program: Program) -> Report:
     for found in compiled.found:
         if selected.wants(found):
             kept.found.append(found)
+            _keep_fix(report, found, remedy(program, found))
         else:
             hidden[found.code] += 1
     shown = Counter(found.code for found in kept.found)
@@ -100,15 +108,25 @@ def check(program: Program) -> Report:
         if shown[code] or not hidden[code]:
             kept.counts[code] = count - hidden[code]
     kept.errors = compiled.errors
-    for found, fix in _by_rules(program, selected):
-        kept.add(found)
-        if fix is not None and kept.counts[found.code] <= kept.limit:
-            report.fixes[found] = fix
+    for rule, findings in _by_rules(program, selected):
+        total = len(findings)
+        if gather and rule.severity is Severity.NOTE and total > ALIKE:
+            findings = [_gathered(findings)]
+        for found, fix in findings:
+            kept.add(found)
+            if kept.counts[found.code] <= kept.limit:
+                _keep_fix(report, found, fix)
+        kept.counts[rule.code] += total - len(findings)
     return report
 
 
-def _by_rules(program: Program, selected: Selected) -> Iterator[tuple[Diagnostic, Fix | None]]:
-    """The wanted findings of the rules with their fixes."""
+def _keep_fix(report: Report, found: Diagnostic, fix: Fix | None) -> None:
+    if fix is not None:
+        report.fixes[found] = fix
+
+
+def _by_rules(program: Program, selected: Selected) -> Iterator[tuple[Rule, list[Fixable]]]:
+    """The rules that found something, with the wanted findings and their fixes."""
     if not program.blocks:
         return
     for rule in RULES:
@@ -118,9 +136,27 @@ def _by_rules(program: Program, selected: Selected) -> Iterator[tuple[Diagnostic
             continue
         if not program.wanted():
             raise Cancelled
+        findings: list[Fixable] = []
         for finding in rule.check(program):
             found = Diagnostic(
                 rule.code, rule.severity, finding.message, finding.span, program.source.name, finding.help
             )
             if selected.wants(found, rule.default):
-                yield found, finding.fix
+                findings.append((found, finding.fix))
+        if findings:
+            found, fix = findings[0]
+            findings[0] = found, fix or rule.fix_all(program)
+            yield rule, findings
+
+
+def _gathered(findings: list[Fixable]) -> Fixable:
+    """Many findings of a rule as one, at the first place."""
+    ordered = sorted(findings, key=lambda one: one[0].span)
+    found, fix = ordered[0]
+    more, last = len(findings) - 1, ordered[-1][0].span.line
+    fixes = [one for _, one in ordered if one is not None]
+    if len(fixes) > 1:
+        fix = Fix(
+            f"{fixes[0].title}, and {len(fixes) - 1} more", tuple(e for one in fixes for e in one.edits)
+        )
+    return replace(found, message=f"{found.message}; {more} more like this, the last in line {last}"), fix

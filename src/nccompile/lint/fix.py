@@ -47,7 +47,8 @@ def apply_fixes(source: Source, options: Options, config: Config, limit: int | N
             text = apply_edits(source.text, [edit for fix in chosen for edit in fix.edits])
             changed = Source(source.name, text, source.sha256)
             after = lint(changed, options, config, limit=0)
-            if _keeps(report, after):
+            added = sum(edit.text.count("\n") for fix in chosen for edit in fix.edits)
+            if _keeps(report, after, added):
                 source, report, count = changed, after, count + len(chosen)
                 break
             refused.add(code)
@@ -66,9 +67,9 @@ def _apart(fixes: list[Fix]) -> list[Fix]:
     return chosen
 
 
-def _keeps(before: Report, after: Report) -> bool:
-    """Whether the change kept the toolpath and brought no new finding of `compile`."""
+def _keeps(before: Report, after: Report, added: int) -> bool:
+    """Whether the change kept the toolpath, but for `added` lines before it, and brought nothing to `compile`."""
     old, new = before.program.diagnostics.counts, after.program.diagnostics.counts
-    return same_path(before.program.chunks, after.program.chunks) and all(
+    return same_path(before.program.chunks, after.program.chunks, shift=added) and all(
         new[code] <= old[code] for code in new
     )

@@ -8,13 +8,11 @@ The toolpath stays the same.  Lines that cannot be read, and those behind a seco
 
 from __future__ import annotations
 
-from collections import defaultdict
-
 from nccompile.diagnostics import Diagnostics
-from nccompile.errors import UsageError
 from nccompile.lint.layout import laid_out
-from nccompile.lint.rewrite import split_lines
-from nccompile.parser import Block, Word, parse, read_header
+from nccompile.lint.numbering import numbering
+from nccompile.lint.rewrite import apply_edits, split_lines
+from nccompile.parser import parse, read_header
 from nccompile.source import Source
 
 __all__ = ["format_text", "renumbered"]
@@ -39,58 +37,5 @@ def format_text(source: Source) -> str:
 
 
 def renumbered(source: Source, step: int) -> Source:
-    """The program with the block numbers `step`, 2 `step`, ...; jumps lead to the same blocks.
-
-    Raises:   UsageError: lines that cannot be read, or a jump whose target is a variable, missing or double.
-    """
-    diagnostics = Diagnostics()
-    blocks = [block for block in parse(source, diagnostics) if block.words or block.number]
-    if diagnostics.errors:
-        line = next(d.span.line for d in diagnostics if d.severity == "error")
-        raise UsageError(f"{source.name}:{line}: cannot be read, so the blocks cannot be numbered")
-    places: dict[int, list[int]] = defaultdict(list)
-    for at, block in enumerate(blocks):
-        if block.number is not None and isinstance(block.number.value, float):
-            places[int(block.number.value)].append(at)
-    lines = split_lines(source.text)
-    for at, block in enumerate(blocks):
-        text, end = lines[block.line - 1]
-        target = _target(block)
-        if target is not None:
-            number = f"L{_new_number(source, block, target, places, step)}"
-            text = _replaced(text, target, number)
-        new = f"N{(at + 1) * step}"
-        lines[block.line - 1] = (_numbered(text, block, new), end)
-    return Source(source.name, "".join(text + end for text, end in lines), source.sha256)
-
-
-def _target(block: Block) -> Word | None:
-    """The word with the target of a jump; None if the block is no jump."""
-    if not any(word.letter == "G" and word.value == 20.0 for word in block.words):
-        return None
-    return next((word for word in block.words if word.letter == "L"), None)
-
-
-def _new_number(source: Source, block: Block, target: Word, places: dict[int, list[int]], step: int) -> int:
-    found = places.get(int(target.value), []) if isinstance(target.value, float) else []
-    if len(found) != 1:
-        why = "is a variable" if not isinstance(target.value, float) else "is missing or there twice"
-        raise UsageError(
-            f"{source.name}:{block.line}: the target {target.text} of this jump {why}, so the blocks cannot be numbered"
-        )
-    return (found[0] + 1) * step
-
-
-def _replaced(text: str, word: Word, new: str) -> str:
-    return text[: word.column - 1] + new + text[word.column - 1 + len(word.text) :]
-
-
-def _numbered(text: str, block: Block, new: str) -> str:
-    """The line with a new block number."""
-    if block.number is not None:
-        return _replaced(text, block.number, new)
-    at = block.words[0].column - 1
-    comments = [c for c in block.comments if c.column - 1 < at]
-    if comments:
-        at = comments[0].column - 1
-    return f"{text[:at]}{new} {text[at:]}"
+    """The program with the block numbers `step`, 2 `step`, ...; raises as `numbering` does."""
+    return Source(source.name, apply_edits(source.text, numbering(source, step)), source.sha256)

@@ -75,12 +75,12 @@ def _sentence(text: str) -> str:
 def markdown(page: Page, fix: str = "", severity: str = "", is_default: bool = True) -> str:
     """The page of a code as a Markdown document."""
     parts = [f"# {page.code}: {page.title}", page.why]
-    if severity:
-        notes = [f"Given by `nccompile lint` as a {severity}."]
-        if not is_default:
-            notes.append(f'Off by default: `extend-select = ["{page.code}"]` turns it on.')
-        if fix:
-            notes.append(f"`--fix` {fix}")
+    notes = [f"Given by `nccompile lint` as a {severity}."] if severity else []
+    if not is_default:
+        notes.append(f'Off by default: `extend-select = ["{page.code}"]` turns it on.')
+    if fix:
+        notes.append(f"`--fix` {fix}" if severity else f"`nccompile lint --fix` {fix}")
+    if notes:
         parts.append(" ".join(notes))
     if page.bad:
         parts.append(f"Gives it:\n\n```\n{_shown(page.bad)}\n```")

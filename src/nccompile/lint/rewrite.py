@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -56,14 +56,19 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
     return "".join(line + end for line, end in lines)
 
 
-def same_path(before: Sequence[Toolpath], after: Sequence[Toolpath], *, lines: bool = True) -> bool:
+def same_path(
+    before: Sequence[Toolpath], after: Sequence[Toolpath], *, lines: bool = True, shift: int = 0
+) -> bool:
     """Whether two toolpaths are the same to the bit, however they are cut into chunks.
 
-    Without `lines` their source lines may differ.
+    Without `lines` their source lines may differ, with `shift` those of `after` are as much greater.
     """
     if not (before and after):
         return len(before) == len(after)
-    return _same(Toolpath.join(list(before)), Toolpath.join(list(after)), () if lines else ("line",))
+    one, other = Toolpath.join(list(before)), Toolpath.join(list(after))
+    if shift:
+        other = replace(other, line=(other.line - shift).astype(other.line.dtype))
+    return _same(one, other, () if lines else ("line",))
 
 
 def _same(before: object, after: object, but: tuple[str, ...]) -> bool:

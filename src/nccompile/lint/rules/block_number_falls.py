@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nccompile.diagnostics import Severity
-from nccompile.lint.base import Finding, Rule
+from nccompile.lint.base import Finding, Fix, Rule
+from nccompile.lint.numbering import numbering_fix
 from nccompile.lint.program import Program
 
 __all__ = ["BlockNumberFalls"]
@@ -18,6 +19,7 @@ class BlockNumberFalls(Rule):
     Why: operators look for a block by its number; falling numbers are usually left over from copied blocks.
     NC053: % a\nN20 G1 X1 F20\nN10 G1 X2
     Okay: % a\nN10 G1 X1 F20\nN20 G1 X2
+    Fix: numbers all blocks anew; jumps follow their targets.
     """
 
     code = "NC053"
@@ -37,3 +39,7 @@ class BlockNumberFalls(Rule):
                     "`nccompile fmt --renumber` numbers the blocks in steps",
                 )  # fmt: skip
             before = number.value
+
+    def fix_all(self, program: Program) -> Fix | None:
+        """New numbers."""
+        return numbering_fix(program)

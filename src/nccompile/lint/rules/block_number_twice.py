@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nccompile.lint.base import Finding, Rule
+from nccompile.lint.base import Finding, Fix, Rule
+from nccompile.lint.numbering import numbering_fix
 from nccompile.lint.program import Program
 
 __all__ = ["BlockNumberTwice"]
@@ -17,6 +18,7 @@ class BlockNumberTwice(Rule):
     Why: a jump to it cannot be executed, and messages that name the block mean two places.
     NC052: % a\nN10 G1 X1 F20\nN10 G1 X2
     Okay: % a\nN10 G1 X1 F20\nN20 G1 X2
+    Fix: numbers all blocks anew, if no jump leads to the number; other jumps follow their targets.
     """
 
     code = "NC052"
@@ -36,3 +38,7 @@ class BlockNumberTwice(Rule):
                         word.span, f"N{number} is also the number of line {line}",
                         "`nccompile fmt --renumber` gives every block its own",
                     )  # fmt: skip
+
+    def fix_all(self, program: Program) -> Fix | None:
+        """New numbers."""
+        return numbering_fix(program)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nccompile.diagnostics import Severity
-from nccompile.lint.base import Finding, Rule
+from nccompile.lint.base import Finding, Fix, Rule
+from nccompile.lint.numbering import numbering_fix
 from nccompile.lint.program import Program
 
 __all__ = ["MissingBlockNumber"]
@@ -21,6 +22,7 @@ class MissingBlockNumber(Rule):
     Why: the number is expected of every block (SoftMotion §3.2); drives, operators and jumps name blocks by it.
     NC051: % a\nN10 G1 X1 F20\nG1 X2
     Okay: % a\nN10 G1 X1 F20\nN20 G1 X2
+    Fix: numbers all blocks anew; jumps follow their targets.
     """
 
     code = "NC051"
@@ -35,3 +37,7 @@ class MissingBlockNumber(Rule):
             return
         for block in missing:
             yield Finding(block.span, "this block has no block number", _HELP)
+
+    def fix_all(self, program: Program) -> Fix | None:
+        """New numbers."""
+        return numbering_fix(program)
