@@ -76,15 +76,37 @@ def labels(found: Any) -> list[str]:
 
 def test_completion(client: Client) -> None:
     uri = "untitled:completion"
-    client.open(uri, "% a\nN10 G36 O$depth$ D1\nN20 G\nN30 G20 L\nN40 X$d\nN50 \n(G\nN60 L")
-    instructions = client.at("textDocument/completion", uri, 2, 5)
+    client.open(uri, "% a\nN10 G36 O$depth$ D1\nN20 G\nN30 G20 L\nN40 X$d\nN50 \n(G\nN60 L\nN130 G20 L1")
+
+    def offered(line: int, character: int) -> Any:
+        return client.at("textDocument/completion", uri, line, character)
+
+    instructions = offered(2, 5)["items"]
     assert {"G0", "G41", "G92"} <= set(labels(instructions))
     assert instructions[0]["textEdit"]["range"] == span(2, 4, 5)
-    assert labels(client.at("textDocument/completion", uri, 3, 9)) == ["20", "40", "10", "50", "60"]
-    assert labels(client.at("textDocument/completion", uri, 4, 7)) == ["$depth$"]
-    assert {"X", "F", "M"} <= set(labels(client.at("textDocument/completion", uri, 5, 4)))
-    assert client.at("textDocument/completion", uri, 6, 2) == []
-    assert client.at("textDocument/completion", uri, 7, 5) == []
+    assert labels(offered(3, 9)["items"]) == ["20", "40", "10", "50", "60"]
+    assert labels(offered(8, 12)["items"]) == ["10"]
+    assert labels(offered(4, 7)["items"]) == ["$depth$"]
+    assert {"X", "F", "M"} <= set(labels(offered(5, 4)["items"]))
+    assert offered(6, 2)["items"] == []
+    assert offered(7, 5)["items"] == []
+    assert offered(5, 4)["isIncomplete"]  # behind the letter other things follow
+    assert not offered(2, 5)["isIncomplete"]
+    client.close(uri)
+
+
+def test_completion_of_many_block_numbers_goes_on_while_one_types(client: Client) -> None:
+    uri = "untitled:many"
+    client.open(uri, "% a\n" + "".join(f"N{n} X1\n" for n in range(1, 1501)) + "G20 L\nG20 L14")
+    some = client.at("textDocument/completion", uri, 1501, 5)
+    assert some["isIncomplete"]
+    assert labels(some["items"])[:2] == ["1500", "1499"]
+    assert len(some["items"]) == 500
+    rest = client.at("textDocument/completion", uri, 1502, 7)
+    assert not rest["isIncomplete"]
+    assert sorted(labels(rest["items"]), key=int) == [
+        str(n) for n in [14, *range(140, 150), *range(1400, 1500)]
+    ]
     client.close(uri)
 
 

@@ -122,7 +122,7 @@ def _changing(server: NcServer) -> None:
     @server.feature(
         types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=completion.TRIGGERS)
     )
-    def completed(params: types.CompletionParams) -> list[types.CompletionItem]:
+    def completed(params: types.CompletionParams) -> types.CompletionList:
         document = server.document(params.text_document.uri)
         return completion.completions(document, convert.place(params.position))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from heapq import nsmallest
 
 from lsprotocol import types
 
@@ -25,14 +26,20 @@ _JUMP = re.compile(r"[Gg]0*20(?![0-9])")
 _MOST = 500
 
 
-def completions(document: Document, at: Place) -> list[types.CompletionItem]:
-    """What can stand at a position."""
+def completions(document: Document, at: Place) -> types.CompletionList:
+    """What can stand at a position; an incomplete list is asked for anew with each further character."""
     line, character = at
     if not 0 <= line < len(document.text.lines):
-        return []
+        return types.CompletionList(False, [])
     text = document.text.lines[line][: document.text.index(line, character)]
     is_prose = text.count("(") > text.count(")") or text.lstrip().startswith("%")
-    return [] if is_prose else _after(document, at, text)
+    items = [] if is_prose else _after(document, at, text)
+    return types.CompletionList(_names_letters(text) or len(items) > _MOST, items[:_MOST])
+
+
+def _names_letters(text: str) -> bool:
+    """Whether a word may begin behind a text: its letter decides what can follow."""
+    return not text or text[-1] in " \t/"
 
 
 def _after(document: Document, at: Place, text: str) -> list[types.CompletionItem]:
@@ -40,10 +47,10 @@ def _after(document: Document, at: Place, text: str) -> list[types.CompletionIte
     if (found := _VARIABLE.search(text)) and text.count("$") % 2 == 1:
         return _variables(document, at, len(found.group()))
     if found := _TARGET.search(text):
-        return _numbers(document, at, len(found[1])) if _JUMP.search(text) else []
+        return _numbers(document, at, found[1]) if _JUMP.search(text) else []
     if found := _INSTRUCTION.search(text):
         return _instructions(document, at, len(found[1]) + 1)
-    return _words() if not text or text[-1] in " \t/" else []
+    return _words() if _names_letters(text) else []
 
 
 def _edit(document: Document, at: Place, length: int, new: str) -> types.TextEdit:
@@ -78,25 +85,24 @@ def _words() -> list[types.CompletionItem]:
     ]
 
 
-def _numbers(document: Document, at: Place, length: int) -> list[types.CompletionItem]:
-    """Block numbers, those of blocks near the jump first."""
-    found: list[tuple[int, int]] = []
+def _numbers(document: Document, at: Place, begin: str) -> list[types.CompletionItem]:
+    """Block numbers that begin so, those of blocks near the jump first; one more than are shown if there are more."""
+    found: list[tuple[int, str]] = []
     for line, node in enumerate(document.nodes):
         block = node.block if isinstance(node, Unread) else node
         if isinstance(block, Block) and block.number is not None and line != at[0]:
             number = number_of(block.number)
-            if number is not None and not is_jump(block):
-                found.append((abs(line - at[0]), number))
-    found.sort()
+            if number is not None and str(number).startswith(begin) and not is_jump(block):
+                found.append((abs(line - at[0]), str(number)))
     return [
         types.CompletionItem(
-            label=str(number),
+            label=number,
             kind=types.CompletionItemKind.Reference,
             detail=f"block N{number}",
             sort_text=f"{rank:04}",
-            text_edit=_edit(document, at, length, str(number)),
+            text_edit=_edit(document, at, len(begin), number),
         )
-        for rank, (_, number) in enumerate(found[:_MOST])
+        for rank, (_, number) in enumerate(nsmallest(_MOST + 1, found))
     ]
 
 
