@@ -75,6 +75,25 @@ def test_past_the_limit_findings_are_counted_as_compile_does() -> None:
     assert len([d for d in checked(text).ordered() if d.code == "NC105"]) == 30
 
 
+def test_many_notes_of_a_kind_become_one_that_counts_them() -> None:
+    text = "% a\nN10 G1 X1 F20\n" + "\n".join(f"N{n} G1 X{n} F20" for n in range(20, 40))
+    (note,) = checked(text, Config(), limit=None).ordered()
+    assert note.message == "the feed is 20 since line 2; 19 more like this, the last in line 22"
+    report = checked(text, Config(), limit=None)
+    assert report.closing == "0 errors, 20 notes (19 more of the same kinds not shown)"
+    assert len(report.fixes[note].edits) == 20
+    assert report.fixes[note].title == "Remove F20, and 19 more"
+    assert len(checked(text, Config(), limit=7).ordered()) == 7
+    assert len(checked(text, Config(), limit=0).ordered()) == 20
+
+
+def test_silenced_notes_do_not_count() -> None:
+    blocks = [f"N{n} G1 X{n} F20 (nc: ignore)" for n in range(20, 40)]
+    text = "% a\nN10 G1 X1 F20\n" + "\n".join([*blocks, "N50 G1 X50 F20"])
+    (note,) = checked(text, Config(), limit=None).ordered()
+    assert (note.message, note.span.line) == ("the feed is 20 since line 2", 23)
+
+
 TWO = "% a\nN10 G1 X1 F20\nN10 G1 X2 F20"
 
 
@@ -136,6 +155,8 @@ def test_settings_come_from_the_nearest_file(tmp_path: Path) -> None:
         ({"lint": {"ignore": "NC1"}}, "must be a list of codes"),
         ({"lint": {"ignore": ["X1"]}}, "must be a list of codes"),
         ({"lint": {"min-segment": -1}}, "must be a length in mm"),
+        ({"lint": {"acknowledged-m": [3, True]}}, "must be a list of whole numbers"),
+        ({"lint": {"acknowledged-m": 3}}, "must be a list of whole numbers"),
         ({"format": {"step": 0}}, "from 1 to 1000"),
         ({"machine": 1}, "must be the name of a file"),
     ],

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 
 from nccompile.lint.base import Rule
-from nccompile.lint.config import Config
+from nccompile.lint.config import parse_config
 from nccompile.lint.engine import Report, lint
 from nccompile.lint.pages import Sheet, sheet_of
 from nccompile.lint.registry import RULES
@@ -30,7 +34,8 @@ def machine_for(sheet: Sheet) -> Machine:
 
 
 def checked(rule: Rule, text: str) -> Report:
-    config = Config(select=(rule.code,))
+    table = {"lint": tomllib.loads(sheet_of(rule).settings)}
+    config = replace(parse_config(table, "nccompile.toml", Path()), select=(rule.code,))
     return lint(Source("a.nc", text), Options(machine_for(sheet_of(rule))), config, limit=0)
 
 

@@ -241,10 +241,19 @@ PAGES: tuple[Page, ...] = (
         "% a\nN10 G0 X10\nN20 G1 X20 F20",
     ),
     Page(
+        "NC172", "An M function that nothing acknowledges",
+        "An M function that the setting `acknowledged-m` does not list; without the setting there is no finding.\n"
+        "The path waits at an M function until the machine acknowledges it (SoftMotion §3.2.2). One that no part of\n"
+        "the control program answers stops the job for good.",
+        "% a\nN10 G0 X1\nN20 M8",
+        "% a\nN10 G0 X1\nN20 M3",
+    ),
+    Page(
         "NC251", "A feed move of no length",
         "G1, or a curve that could not be made, that ends where it starts; not after G92, where it gives the\n"
         "position out (SoftMotion §3.2).\n"
-        "The path stops or a switch acts where nothing moves; it is usually a block that was written twice.",
+        "It moves nothing. A point that stands twice comes from rounding in the CAM system, or one of its\n"
+        "coordinates was meant to differ.",
         "% a\nN10 G1 X5 F20\nN20 G1 X5",
         "% a\nN10 G1 X5 F20\nN20 G1 X6",
     ),
@@ -326,8 +335,8 @@ PAGES: tuple[Page, ...] = (
     ),
     Page(
         "NC451", "The feed is more than the machine's axes can do",
-        "A programmed feed for which an axis would have to move faster than its `velocity`; one finding each\n"
-        "time F changes.\n"
+        "A programmed feed for which an axis would have to move faster than its `velocity`; one finding a\n"
+        "program.\n"
         "The path runs slower than programmed; often F was meant in mm/min.",
         "% a\nN10 G1 X100 F5000",
         "% a\nN10 G1 X100 F50",
@@ -341,10 +350,10 @@ PAGES: tuple[Page, ...] = (
     ),
     Page(
         "NC551", "A single kink in a smooth contour",
-        "A bend above the machine's angle tolerance, at most 60 degrees, between neighbours that bend by less\n"
-        "than 5 degrees, in a run of short feed moves.\n"
-        "The path stops there (SoftMotion §3.2), which leaves a mark; in a contour of short segments it is\n"
-        "usually a misplaced point, not a corner.",
+        "A bend above the machine's angle tolerance, at most 60 degrees, between two bends on each side of less\n"
+        "than 5 degrees.\n"
+        "The path stops there (SoftMotion §3.2), which leaves a mark in a contour that is smooth otherwise. It may\n"
+        "be an edge of the workpiece, the joint of two curves in the drawing, or a misplaced point.",
         "% a\nN10 G1 X1 F20\nN20 G1 X2\nN30 G1 X3\nN40 G1 X4 Y0.5\nN50 G1 X5 Y1\nN60 G1 X6 Y1.5",
         "% a\nN10 G1 X1 F20\nN20 G1 X2\nN30 G1 X3 Y0.1\nN40 G1 X4 Y0.3\nN50 G1 X5 Y0.6\nN60 G1 X6 Y1",
     ),

@@ -8,6 +8,7 @@ extend-select = ["NC153"]       in addition, also rules that are off by default
 ignore = ["NC055"]              warnings and notes that are not shown; errors always are
 min-segment = 0.001             mm, NC254
 min-radius = 0.005              mm, NC252
+acknowledged-m = [3, 5]         M functions that the machine acknowledges, NC172; default: not known
 
 [format]
 step = 10                       distance of block numbers of `fmt --renumber`
@@ -36,6 +37,7 @@ class Config:
     ignore: tuple[str, ...] = ()
     min_segment: float = 0.001
     min_radius: float = 0.005
+    acknowledged_m: frozenset[int] | None = None
     step: int = 10
     machine: Path | None = None
 
@@ -58,7 +60,11 @@ def _longest(prefixes: tuple[str, ...], code: str) -> int:
 
 _LISTS = ("select", "extend-select", "ignore")
 _LENGTHS = ("min-segment", "min-radius")
-_KEYS = {"": ("machine", "lint", "format"), "lint.": (*_LISTS, *_LENGTHS), "format.": ("step",)}
+_KEYS = {
+    "": ("machine", "lint", "format"),
+    "lint.": (*_LISTS, *_LENGTHS, "acknowledged-m"),
+    "format.": ("step",),
+}
 
 
 def parse_config(table: dict[str, Any], name: str, folder: Path) -> Config:
@@ -75,6 +81,8 @@ def parse_config(table: dict[str, Any], name: str, folder: Path) -> Config:
     for key in _LENGTHS:
         if key in lint:
             values[key.replace("-", "_")] = _length(lint[key], f"{name}: lint.{key}")
+    if "acknowledged-m" in lint:
+        values["acknowledged_m"] = _numbers(lint["acknowledged-m"], f"{name}: lint.acknowledged-m")
     step = form.get("step", 10)
     if not isinstance(step, int) or isinstance(step, bool) or not 1 <= step <= 1000:
         raise UsageError(f"{name}: format.step must be a whole number from 1 to 1000, not {step!r}")
@@ -97,6 +105,12 @@ def _codes(value: object, where: str) -> tuple[str, ...]:
     if not isinstance(value, list) or not all(isinstance(v, str) and v.startswith("NC") for v in value):
         raise UsageError(f'{where} must be a list of codes or their first characters, as in ["NC15"]')
     return tuple(value)
+
+
+def _numbers(value: object, where: str) -> frozenset[int]:
+    if not isinstance(value, list) or not all(type(v) is int and v >= 0 for v in value):
+        raise UsageError(f"{where} must be a list of whole numbers, as in [3, 5]")
+    return frozenset(value)
 
 
 def _length(value: object, where: str) -> float:

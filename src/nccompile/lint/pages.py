@@ -11,7 +11,7 @@ from nccompile.lint.base import Rule
 
 __all__ = ["Sheet", "markdown", "sheet_of"]
 
-_LABEL = re.compile(r"(What|Why|Fix|Machine|Okay|NC\d{3}): ?(.*)")
+_LABEL = re.compile(r"(What|Why|Fix|Machine|Settings|Okay|NC\d{3}): ?(.*)")
 _ESCAPE = re.compile(r"\\(n|r|t|x[0-9a-f]{2})")
 _MEANING = {"n": "\n", "r": "\r", "t": "\t"}
 
@@ -19,7 +19,8 @@ _MEANING = {"n": "\n", "r": "\r", "t": "\t"}
 class Sheet(NamedTuple):
     """The parts of a rule's docstring; `bad` and `okay` are its sample programs.
 
-    fix: what its fix does, empty if it has none;  machine: what the sample's machine must have.
+    fix: what its fix does, empty if it has none;  machine, settings: what the samples' machine must have, and
+    the lines below [lint] in their settings.
     """
 
     title: str
@@ -29,6 +30,7 @@ class Sheet(NamedTuple):
     okay: tuple[str, ...]
     fix: str = ""
     machine: str = ""
+    settings: str = ""
 
     def page(self, code: str) -> Page:
         """The page for `nccompile explain`."""
@@ -58,6 +60,7 @@ def sheet_of(rule: Rule | type[Rule]) -> Sheet:
         tuple(_program(text) for text in parts["Okay"]),
         texts.get("Fix", ""),
         texts.get("Machine", ""),
+        texts.get("Settings", ""),
     )
 
 

@@ -17,8 +17,8 @@ __all__ = ["FeedOverLimit"]
 class FeedOverLimit(Rule):
     r"""The feed is more than the machine's axes can do.
 
-    What: a programmed feed for which an axis would have to move faster than its `velocity`; one finding each
-    time F changes.
+    What: a programmed feed for which an axis would have to move faster than its `velocity`; one finding a
+    program.
     Why: the path runs slower than programmed; often F was meant in mm/min.
     NC451: % a\nN10 G1 X100 F5000
     Okay: % a\nN10 G1 X100 F50
@@ -39,16 +39,20 @@ class FeedOverLimit(Rule):
         share = np.abs(path.target[rows] - path.starts()[rows]) / path.length[rows, None]
         with np.errstate(divide="ignore"):
             allowed = np.where(share > 0.0, most / np.where(share > 0.0, share, 1.0), np.inf)
-        over = path.feed[rows] > allowed.min(axis=1) * (1.0 + 1e-9)
-        reported = 0.0
-        for row, limit, axis in zip(
-            rows[over], allowed.min(axis=1)[over], allowed.argmin(axis=1)[over], strict=True
-        ):
-            if path.feed[row] == reported:
-                continue
-            reported = float(path.feed[row])
-            yield Finding(
-                program.source.text_span(int(path.line[row])),
-                f"the feed of {reported:g} mm/s is limited to {limit:.4g} mm/s by axis {path.axes[axis]}",
-                "F is in mm/s",
-            )  # fmt: skip
+        bound = allowed.min(axis=1)
+        excess = path.feed[rows] / bound
+        over = np.flatnonzero(excess > 1.0 + 1e-9)
+        if not len(over):
+            return
+        here, worst = int(over[0]), int(np.argmax(excess))
+        more = ""
+        if len(over) > 1:
+            feed, line = path.feed[rows[worst]], path.line[rows[worst]]
+            more = f"; {len(over) - 1} more moves are"
+            more += f", most of all F{feed:g} in line {line}" if worst != here else ""
+        yield Finding(
+            program.source.text_span(int(path.line[rows[here]])),
+            f"the feed of {path.feed[rows[here]]:g} mm/s is limited to {bound[here]:.4g} mm/s by axis "
+            f"{path.axes[allowed[here].argmin()]}{more}",
+            "F is in mm/s",
+        )

@@ -22,10 +22,10 @@ MOST = 60.0
 class SingleKink(Rule):
     r"""A single kink in a smooth contour.
 
-    What: a bend above the machine's angle tolerance, at most 60 degrees, between neighbours that bend by less
-    than 5 degrees, in a run of short feed moves.
-    Why: the path stops there (SoftMotion §3.2), which leaves a mark; in a contour of short segments it is
-    usually a misplaced point, not a corner.
+    What: a bend above the machine's angle tolerance, at most 60 degrees, between two bends on each side of less
+    than 5 degrees.
+    Why: the path stops there (SoftMotion §3.2), which leaves a mark in a contour that is smooth otherwise. It may
+    be an edge of the workpiece, the joint of two curves in the drawing, or a misplaced point.
     NC551: % a\nN10 G1 X1 F20\nN20 G1 X2\nN30 G1 X3\nN40 G1 X4 Y0.5\nN50 G1 X5 Y1\nN60 G1 X6 Y1.5
     Okay: % a\nN10 G1 X1 F20\nN20 G1 X2\nN30 G1 X3 Y0.1\nN40 G1 X4 Y0.3\nN50 G1 X5 Y0.6\nN60 G1 X6 Y1
     """
@@ -50,5 +50,5 @@ class SingleKink(Rule):
             yield Finding(
                 program.source.text_span(int(program.path.line[row])),
                 f"the path stops here: a single bend of {here[at]:.3g} degrees in a smooth contour",
-                "check the point, or smooth the contour with G51",
+                "check the point; G51, or a larger angle tolerance, keeps the path moving",
             )  # fmt: skip

@@ -18,7 +18,8 @@ class ZeroLengthMove(Rule):
 
     What: G1, or a curve that could not be made, that ends where it starts; not after G92, where it gives the
     position out (SoftMotion §3.2).
-    Why: the path stops or a switch acts where nothing moves; it is usually a block that was written twice.
+    Why: it moves nothing. A point that stands twice comes from rounding in the CAM system, or one of its
+    coordinates was meant to differ.
     NC251: % a\nN10 G1 X5 F20\nN20 G1 X5
     Okay: % a\nN10 G1 X5 F20\nN20 G1 X6
     """
