@@ -134,15 +134,17 @@ def law_velocity(
 
 
 @kernel
-def jerk_time(length: float, v0: float, a0: float, a1: float) -> float:
-    """Duration of a constant jerk over `length` from velocity v0 and acceleration a0 to acceleration a1.
+def jerk_time(length: float, v0: float, v1: float, a0: float, a1: float) -> float:
+    """Duration of a constant jerk over `length` from (v0, a0) to (v1, a1), velocities and accelerations.
 
-    L = v0 T + (2 a0 + a1) T² / 6     T = 2 L / (v0 + sqrt(v0² + 2/3 (2 a0 + a1) L))     jerk (a1 - a0) / T
+    L = (v0 + v1) T / 2 + (a0 - a1) T² / 12     T = 2 L / (m + sqrt(m² + (a0 - a1) L / 3)),  m = (v0 + v1) / 2
 
-    0 if the path does not get that far.
+    Without v1 there are two: braking to a stop and, in half of the time, to half of the velocity.  This root is the
+    one for every law whose acceleration keeps its sign.  0 if the path does not get that far.
     """
-    square = v0 * v0 + 2.0 / 3.0 * (2.0 * a0 + a1) * length
-    below = v0 + sqrt(square) if square > 0.0 else v0
+    mean = 0.5 * (v0 + v1)
+    square = mean * mean + (a0 - a1) * length / 3.0
+    below = mean + sqrt(square) if square > 0.0 else mean
     return 2.0 * length / below if below > 0.0 else 0.0
 
 

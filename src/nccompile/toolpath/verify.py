@@ -346,8 +346,9 @@ def _check_third_order(chunk: Toolpath, start: Floats, known: Flags) -> None:
     if len(known) and chunk.first > 0:
         known[0] = False  # the acceleration before is not at hand
     length = chunk.length
-    root = np.sqrt(np.maximum(start * start + 2.0 / 3.0 * (2.0 * a0 + a1) * length, 0.0))
-    time = np.divide(2.0 * length, start + root, out=np.zeros_like(v), where=known & (start + root > 0.0))
+    mean = 0.5 * (start + v)
+    below = mean + np.sqrt(np.maximum(mean * mean + (a0 - a1) * length / 3.0, 0.0))
+    time = np.divide(2.0 * length, below, out=np.zeros_like(v), where=known & (below > 0.0))
     _forbid(chunk, known & (time <= 0.0), "the segment cannot be run with a constant jerk")
     off = np.abs(start + 0.5 * (a0 + a1) * time - v)
     _forbid(chunk, known & (off > _LAW_RATIO * np.maximum(v, start)), "v_end is not where the jerk leads to")
