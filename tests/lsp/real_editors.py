@@ -1,0 +1,115 @@
+"""Neovim and Emacs, set up by the very lines of docs/editors.md, open a program and use the server.
+
+python -m tests.lsp.real_editors [neovim] [neovim-0.8] [emacs]
+
+NVIM and EMACS name the editors if they are not on the path; without arguments those that are there are tried.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "editors.md"
+TIMEOUT = 180.0
+"""Time after which an editor counts as stuck [s]."""
+
+PROGRAM = """\
+% bracket
+(rough)
+N10 G0 X0 Y0 Z5
+N20 G1 Z-2 F5
+N30 G1 X40 Y0 F20
+N40 g1 X40 Y20
+N50 G3 X30 Y30 I-10 J0
+N60 G1 X0 Y30
+(finish)
+N70 G91
+N80 G36 O$pass$ D3
+N90 G1 X0 Y-10
+N100 G2 X5 Y-5 I0 J-6
+N110 G37 O$pass$ D-1
+N120 G20 L90 K$pass$
+N130 G90
+N140 G0 Z5
+"""
+
+Command = Callable[[Path, Path], list[str]]
+
+
+def set_up(language: str, at: int) -> str:
+    """The set-up lines of the page: the `at`-th block in a language."""
+    return re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(), re.DOTALL)[at]
+
+
+def neovim(at: int) -> Command:
+    """Neovim with a block of set-up lines as its init.lua."""
+
+    def command(home: Path, program: Path) -> list[str]:
+        (home / "nvim").mkdir()
+        (home / "nvim" / "init.lua").write_text(set_up("lua", at))
+        check = ROOT / "editors" / "neovim" / "check.lua"
+        return [os.environ.get("NVIM", "nvim"), "--headless", str(program), "-c", f"luafile {check}"]
+
+    return command
+
+
+def emacs(home: Path, program: Path) -> list[str]:
+    """Emacs in batch mode with the set-up lines as its init file."""
+    (home / "init.el").write_text(set_up("lisp", 0))
+    check = ROOT / "editors" / "emacs" / "check.el"
+    return [os.environ.get("EMACS", "emacs"), "--batch", "-l", str(home / "init.el"), "-l", str(check)]
+
+
+EDITORS: dict[str, tuple[str, str, Command]] = {
+    "neovim": ("NVIM", "nvim", neovim(0)),
+    "neovim-0.8": ("NVIM", "nvim", neovim(1)),
+    "emacs": ("EMACS", "emacs", emacs),
+}
+"""By name: the variable and the name of the program, and how it is started."""
+
+
+def tried(name: str) -> bool:
+    """Runs one editor and prints what it saw; whether all was right."""
+    with tempfile.TemporaryDirectory() as folder:
+        home, results = Path(folder), Path(folder) / "results"
+        program = home / "work" / "bracket.nc"
+        program.parent.mkdir()
+        program.write_text(PROGRAM)
+        environment = os.environ | {
+            "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+            "HOME": folder,
+            "XDG_CONFIG_HOME": folder,
+            "XDG_STATE_HOME": folder,
+            "RESULTS": str(results),
+            "PROGRAM": str(program),
+        }
+        done = subprocess.run(
+            EDITORS[name][2](home, program),
+            env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT, check=False,
+        )  # fmt: skip
+        seen = results.read_text().splitlines() if results.exists() else []
+    for line in seen:
+        print(f"{name}: {line}")
+    if not seen:
+        print(f"{name}: no results, exit code {done.returncode}\n{done.stderr.decode()[-4000:]}")
+    return bool(seen) and all(line.startswith("ok ") for line in seen)
+
+
+def main(names: list[str]) -> int:
+    """0 if all editors saw what they should, or none is there."""
+    wanted = names or [
+        name for name, (variable, program, _) in EDITORS.items() if variable in os.environ or shutil.which(program)
+    ]
+    return 0 if all([tried(name) for name in wanted]) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
