@@ -80,7 +80,7 @@ def test_many_notes_of_a_kind_become_one_that_counts_them() -> None:
     (note,) = checked(text, Config(), limit=None).ordered()
     assert note.message == "the feed is 20 since line 2; 19 more like this, the last in line 22"
     report = checked(text, Config(), limit=None)
-    assert report.closing == "0 errors, 20 notes (19 more of the same kinds not shown)"
+    assert report.closing == "0 errors, 20 notes (19 more of the same kinds, --limit 0 shows them)"
     assert len(report.fixes[note].edits) == 20
     assert report.fixes[note].title == "Remove F20, and 19 more"
     assert len(checked(text, Config(), limit=7).ordered()) == 7
@@ -153,7 +153,9 @@ def test_settings_come_from_the_nearest_file(tmp_path: Path) -> None:
         ({"lint": {"selct": []}}, "unknown key lint.selct; did you mean select?"),
         ({"lint": []}, "[lint] must be a section"),
         ({"lint": {"ignore": "NC1"}}, "must be a list of codes"),
-        ({"lint": {"ignore": ["X1"]}}, "must be a list of codes"),
+        ({"lint": {"ignore": ["X1"]}}, "lint.ignore: there is no code X1"),
+        ({"lint": {"select": ["NC999"]}}, "lint.select: there is no code NC999"),
+        ({"lint": {"select": [""]}}, "there is no code ''"),
         ({"lint": {"min-segment": -1}}, "must be a length in mm"),
         ({"lint": {"acknowledged-m": [3, True]}}, "must be a list of whole numbers"),
         ({"lint": {"acknowledged-m": 3}}, "must be a list of whole numbers"),
@@ -166,6 +168,12 @@ def test_wrong_settings_are_refused_with_the_key(table: dict[str, object], messa
         parse_config(table, "nccompile.toml", Path())
     assert message in str(refused.value)
     assert "nccompile.toml" in str(refused.value)
+
+
+def test_a_section_that_is_none_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text("[tool]\nnccompile = 3\n")
+    with pytest.raises(UsageError, match="must be a section"):
+        config_for(tmp_path / "a.nc")
 
 
 def test_a_settings_file_that_is_not_toml_is_refused(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -123,8 +124,15 @@ def test_lint_command_fixes_files_and_streams(command: Command, tmp_path: Path) 
     [
         (("lint", "missing.nc"), "missing.nc cannot be read"),
         (("lint", "queue.nc"), "queue.nc is an OutQueue"),
-        (("lint", "-", "--select", "E501"), "E501 is no code"),
+        (("lint", "-", "--select", "E501"), "--select: there is no code E501"),
+        (("lint", "missing.nc", "--ignore", "NC05,NC999"), "--ignore: there is no code NC999"),
+        (("lint", "/dev/zero"), "/dev/zero is a device"),
+        (("lint", "--fix", "pipe.nc"), "pipe.nc is no file that could be changed"),
+        (("lint", "-", "--limit", "-1"), "--limit"),
+        (("lint",), "Missing argument"),
         (("fmt", "missing.nc"), "missing.nc cannot be read"),
+        (("fmt", "/dev/zero"), "/dev/zero is no file that could be changed"),
+        (("fmt", "pipe.nc"), "pipe.nc is no file that could be changed"),
     ],
 )
 def test_wrong_use_is_refused(
@@ -134,9 +142,35 @@ def test_wrong_use_is_refused(
     message: str,
 ) -> None:
     (tmp_path / "queue.nc").write_bytes(b"PK\x03\x04")
+    os.mkfifo(tmp_path / "pipe.nc")
     code, out, err = command(*arguments)
     assert (code, out) == (2, "")
     assert message in err
+
+
+def test_folders_and_names_given_twice(command: Command, tmp_path: Path) -> None:  # noqa: F811
+    (tmp_path / "a.nc").write_text("% a\nN10 G7\n")
+    (tmp_path / "empty").mkdir()
+    assert command("lint", "a.nc", "./a.nc", tmp_path / "empty").out.count("error[NC102]") == 1
+    assert command("lint", "empty") == (0, "", "empty: no programs (.cnc .din .iso .nc) in this folder\n")
+    assert command("lint", "-", "-", stdin=b"% a\nN10 G7\n").out.count("error[NC102]") == 1
+
+
+@pytest.mark.parametrize("text", ["[lint]\nselct = []\n", "[lint\n", "\xff", "[lint]\nignore = ['E1']\n"])
+@pytest.mark.parametrize("program", ["", "% a\nN10 G1 X1 F20\n"])
+def test_wrong_settings_end_both_commands(
+    command: Command,  # noqa: F811
+    tmp_path: Path,
+    text: str,
+    program: str,
+) -> None:
+    (tmp_path / "nccompile.toml").write_text(text, encoding="latin-1")
+    (tmp_path / "a.nc").write_text(program)
+    for name in ("lint", "fmt"):
+        code, out, err = command(name, "a.nc")
+        assert (code, out) == (2, "")
+        assert "nccompile.toml: " in err
+        assert len(err.splitlines()) == 1
 
 
 def test_fmt_command(command: Command, tmp_path: Path) -> None:  # noqa: F811

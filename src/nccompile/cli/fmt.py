@@ -26,7 +26,8 @@ def format_programs(
     ] = None,
 ) -> None:
     """Lay part programs out: upper case, one blank between words; the toolpath stays the same."""
-    from nccompile.cli.lint import STDIN, programs_in, read_bytes, store
+    from nccompile.cli.programs import name_of, programs_in, read_bytes, require_file, store
+    from nccompile.cli.queues import STDIN
     from nccompile.lint.config import Config, config_for
     from nccompile.lint.fmt import format_text, renumbered
     from nccompile.lint.rewrite import encoding_of
@@ -34,16 +35,18 @@ def format_programs(
 
     changed = 0
     for path in programs_in(files):
+        if not check:
+            require_file(path)
         data = read_bytes(path)
-        source = Source.from_bytes("<stdin>" if path == STDIN else str(path), data)
+        source = Source.from_bytes(name_of(path), data)
         config = Config() if path == STDIN else config_for(path)
         if renumber:
             source = renumbered(source, config.step if step is None else step)
         new = encoding_of(data).encode(format_text(source))
+        if not check:
+            store(path, data, new)
         if new != data:
             changed += 1
             print(f"{source.name}: {'would be laid out' if check else 'laid out'}", file=sys.stderr)
-        if not check:
-            store(path, data, new)
     if check and changed:
         raise typer.Exit(1)

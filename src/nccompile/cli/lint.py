@@ -14,17 +14,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nccompile.cli.options import Define, MachineFile, MaxJumps, SkipBlocks, Start
+from nccompile.cli.queues import STDIN
 
 if TYPE_CHECKING:
-    from nccompile.lint.engine import Report
+    from nccompile.lint.config import Config
+    from nccompile.lint.engine import Findings
+    from nccompile.toolchain import Options
 
-__all__ = ["STDIN", "Format", "lint_programs", "programs_in", "read_bytes", "store"]
-
-STDIN = Path("-")
-ZIP = b"PK\x03\x04"
-
-SUFFIXES = {".nc", ".cnc", ".din", ".iso"}
-"""Files that are taken from folders."""
+__all__ = ["Format", "lint_programs"]
 
 
 class Format(StrEnum):
@@ -62,39 +59,52 @@ def lint_programs(
     max_jumps: MaxJumps = None,
 ) -> None:
     """Check part programs; settings come from nccompile.toml or pyproject.toml above them."""
-    selected, ignored = _codes(select), _codes(ignore)
-    sources = {path: read_bytes(path) for path in programs_in(files)}
+    from nccompile.cli.programs import programs_in, read_bytes, require_file
+    from nccompile.lint.config import Config, config_for, known_codes
+
+    selected = known_codes(_parts(select), "--select")
+    ignored = known_codes(_parts(ignore), "--ignore")
+    texts = {}
+    for path in programs_in(files):
+        if fix:
+            require_file(path)
+        config = (Config() if path == STDIN else config_for(path)).with_codes(selected, ignored)
+        texts[path] = (config, read_bytes(path))
     plain = form is Format.TEXT and machine is None and not (fix or statistics)
-    if plain and all(not data.strip() for data in sources.values()):
-        _say_empty(sources)
+    if plain and all(not data.strip() for _, data in texts.values()):
+        _say_empty({path: data for path, (_, data) in texts.items()})
     from nccompile.cli.inputs import ProgramOptions, machine_of
-    from nccompile.lint.config import Config, config_for
+    from nccompile.lint.output import FORMATS
+
+    settings = ProgramOptions(start, define, skip_blocks, max_jumps)
+    found = []
+    with _without_collection():
+        for path, (config, data) in texts.items():
+            options = settings.resolve(machine_of(machine if machine is not None else config.machine))
+            found.append(_check(path, data, options, config, limit, fix))
+    out = sys.stderr if fix and STDIN in texts else sys.stdout
+    out.write(_statistics(found) if statistics else FORMATS[form](found))
+    _close(found, strict)
+
+
+def _check(
+    path: Path, data: bytes, options: Options, config: Config, limit: int | None, fix: bool
+) -> Findings:
+    """The findings in a program; with `fix` those that are left after it was fixed."""
+    from nccompile.cli.programs import name_of, store
     from nccompile.lint.engine import lint
     from nccompile.lint.fix import apply_fixes
-    from nccompile.lint.output import FORMATS
     from nccompile.lint.rewrite import encoding_of
     from nccompile.source import Source
 
-    settings = ProgramOptions(start, define, skip_blocks, max_jumps)
-    reports = []
-    with _without_collection():
-        for path, data in sources.items():
-            config = (Config() if path == STDIN else config_for(path)).with_codes(selected, ignored)
-            options = settings.resolve(machine_of(machine if machine is not None else config.machine))
-            source = Source.from_bytes(_name(path), data)
-            if fix:
-                fixed = apply_fixes(source, options, config, limit)
-                store(path, data, encoding_of(data).encode(fixed.text))
-                if fixed.applied:
-                    print(
-                        f"{path}: {fixed.applied} finding{'s' * (fixed.applied != 1)} fixed", file=sys.stderr
-                    )
-                reports.append(fixed.report)
-            else:
-                reports.append(lint(source, options, config, limit=limit))
-    out = sys.stderr if fix and STDIN in files else sys.stdout
-    out.write(_statistics(reports) if statistics else FORMATS[form](reports))
-    _close(reports, strict)
+    source = Source.from_bytes(name_of(path), data)
+    if not fix:
+        return lint(source, options, config, limit=limit).findings()
+    fixed = apply_fixes(source, options, config, limit)
+    store(path, data, encoding_of(data).encode(fixed.text))
+    if fixed.applied:
+        print(f"{path}: {fixed.applied} finding{'s' * (fixed.applied != 1)} fixed", file=sys.stderr)
+    return fixed.report.findings()
 
 
 @contextmanager
@@ -111,18 +121,15 @@ def _without_collection() -> Iterator[None]:
             gc.enable()
 
 
-def _name(path: Path) -> str:
-    return "<stdin>" if path == STDIN else str(path)
-
-
 def _say_empty(sources: dict[Path, bytes]) -> None:
     """Reports programs without any text; the parser alone says all, and the rest of us starts slowly."""
+    from nccompile.cli.programs import name_of
     from nccompile.diagnostics import Diagnostics, render
     from nccompile.parser import parse
     from nccompile.source import Source
 
     for path, data in sources.items():
-        source, diagnostics = Source.from_bytes(_name(path), data), Diagnostics()
+        source, diagnostics = Source.from_bytes(name_of(path), data), Diagnostics()
         for _ in parse(source, diagnostics):
             raise AssertionError("a program without text has no block")
         for found in diagnostics:
@@ -131,56 +138,12 @@ def _say_empty(sources: dict[Path, bytes]) -> None:
     raise typer.Exit(1 if sources else 0)
 
 
-def _codes(given: list[str] | None) -> tuple[str, ...]:
-    from nccompile.errors import UsageError
-
-    codes = [code.strip().upper() for text in given or () for code in text.split(",") if code.strip()]
-    for code in codes:
-        if not code.startswith("NC"):
-            raise UsageError(f"{code} is no code; write NC151 or the first characters of some, NC15")
-    return tuple(codes)
+def _parts(given: list[str] | None) -> list[str]:
+    """The codes of an option that takes several, between commas or given again."""
+    return [code for text in given or () for code in text.split(",")]
 
 
-def programs_in(files: list[Path]) -> list[Path]:
-    """The programs named, and those in the folders named, in the order of their names."""
-    found: list[Path] = []
-    for path in files:
-        if path.is_dir():
-            found += sorted(p for p in path.rglob("*") if p.suffix.lower() in SUFFIXES and p.is_file())
-        else:
-            found.append(path)
-    return found
-
-
-def read_bytes(path: Path) -> bytes:
-    """The bytes of a program, `-` for standard input; raises UsageError."""
-    from nccompile.errors import UsageError
-
-    if path == STDIN:
-        return sys.stdin.buffer.read()
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
-    if path.suffix.lower() == ".ncq" or data.startswith(ZIP):
-        raise UsageError(f"{path} is an OutQueue, not a part program")
-    return data
-
-
-def store(path: Path, data: bytes, new: bytes) -> None:
-    """Writes a changed program back; that of standard input goes to standard output."""
-    from nccompile.backend.files import replacing
-
-    if path == STDIN:
-        sys.stdout.buffer.write(new)
-        sys.stdout.flush()
-    elif new != data:
-        with replacing(path) as (file, commit):
-            file.write(new)
-            commit()
-
-
-def _statistics(reports: list[Report]) -> str:
+def _statistics(reports: list[Findings]) -> str:
     from nccompile.codes import PAGES
 
     counts: Counter[str] = Counter()
@@ -190,7 +153,7 @@ def _statistics(reports: list[Report]) -> str:
     return "".join(f"{count:8}  {code}  {PAGES[code].title}\n" for code, count in rows)
 
 
-def _close(reports: list[Report], strict: bool) -> None:
+def _close(reports: list[Findings], strict: bool) -> None:
     """The closing lines, and the exit code."""
     from nccompile.diagnostics import Severity
 

@@ -1,13 +1,16 @@
-"""OutQueues that commands read; apart from `inputs`, so that they do without everything that compiles."""
+"""What kind of file a path names, and OutQueues that commands read; nothing here needs what compiles."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from nccompile.backend import ncq
 from nccompile.errors import UsageError
 
-__all__ = ["STDIN", "is_queue", "read_queue"]
+if TYPE_CHECKING:
+    from nccompile.backend import ncq
+
+__all__ = ["STDIN", "is_queue", "read_queue", "require_program"]
 
 STDIN = Path("-")
 _ZIP_STARTS = (b"PK\x03\x04", b"PK\x05\x06")
@@ -15,6 +18,8 @@ _ZIP_STARTS = (b"PK\x03\x04", b"PK\x05\x06")
 
 def read_queue(path: Path) -> ncq.Queue:
     """The OutQueue at a path, checked from end to end; raises UsageError or QueueError."""
+    from nccompile.backend import ncq
+
     if not is_queue(path) and path.suffix.lower() != ".ncq" and path.is_file():
         raise UsageError(f"{path} is not an OutQueue; compile it first: nccompile compile {path}")
     return ncq.read(path).check()
@@ -31,3 +36,11 @@ def is_queue(path: Path) -> bool:
             return file.read(4) in _ZIP_STARTS
     except OSError as error:
         raise UsageError(f"{path} cannot be read: {error.strerror or error}") from error
+
+
+def require_program(path: Path) -> None:
+    """Raises UsageError if a path cannot be a part program: an OutQueue, or a device without end."""
+    if is_queue(path):
+        raise UsageError(f"{path} is an OutQueue, not a part program: it was compiled already")
+    if path.is_char_device() or path.is_block_device():
+        raise UsageError(f"{path} is a device, not a part program; - reads standard input")

@@ -18,14 +18,16 @@ from __future__ import annotations
 
 import difflib
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from nccompile.codes import PAGES
 from nccompile.errors import UsageError
 
-__all__ = ["Config", "config_for", "parse_config"]
+__all__ = ["Config", "config_for", "known_codes", "parse_config"]
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,17 @@ class Config:
 
 def _longest(prefixes: tuple[str, ...], code: str) -> int:
     return max((len(prefix) for prefix in prefixes if code.startswith(prefix)), default=-1)
+
+
+def known_codes(prefixes: Sequence[str], where: str) -> tuple[str, ...]:
+    """Codes or their first characters in upper case; raises UsageError for those that no code starts with."""
+    found = tuple(prefix.strip().upper() for prefix in prefixes)
+    for prefix in found:
+        if not prefix or not any(code.startswith(prefix) for code in PAGES):
+            raise UsageError(
+                f"{where}: there is no code {prefix or repr(prefix)}; `nccompile explain` lists all"
+            )
+    return found
 
 
 _LISTS = ("select", "extend-select", "ignore")
@@ -102,9 +115,9 @@ def _known(table: dict[str, Any], prefix: str, name: str) -> None:
 
 
 def _codes(value: object, where: str) -> tuple[str, ...]:
-    if not isinstance(value, list) or not all(isinstance(v, str) and v.startswith("NC") for v in value):
+    if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
         raise UsageError(f'{where} must be a list of codes or their first characters, as in ["NC15"]')
-    return tuple(value)
+    return known_codes(value, where)
 
 
 def _numbers(value: object, where: str) -> frozenset[int]:
@@ -126,10 +139,12 @@ def config_for(path: Path) -> Config:
         if own.is_file():
             return parse_config(_load(own), str(own), folder)
         if project.is_file():
-            tool = _load(project).get("tool", {})
+            tool = _load(project).get("tool")
             table = tool.get("nccompile") if isinstance(tool, dict) else None
             if isinstance(table, dict):
                 return parse_config(table, str(project), folder)
+            if table is not None:
+                raise UsageError(f"{project}: [tool.nccompile] must be a section")
     return Config()
 
 

@@ -17,7 +17,7 @@ from nccompile.lint.remedies import remedy
 from nccompile.source import Source
 from nccompile.toolchain import Options
 
-__all__ = ["Report", "Selected", "check", "lint"]
+__all__ = ["Findings", "Report", "Selected", "check", "lint"]
 
 ALL = 2**62
 """A limit that is none."""
@@ -29,17 +29,12 @@ Fixable: TypeAlias = tuple[Diagnostic, Fix | None]
 
 
 @dataclass
-class Report:
-    """What was found in one program: all findings kept, and the safe fixes by the finding they belong to."""
+class Findings:
+    """What was found in one program: its text, all findings kept, and the safe fixes by their finding."""
 
-    program: Program
+    source: Source
     diagnostics: Diagnostics
     fixes: dict[Diagnostic, Fix] = field(default_factory=dict)
-
-    @property
-    def source(self) -> Source:
-        """The program's text."""
-        return self.program.source
 
     @property
     def closing(self) -> str:
@@ -50,11 +45,23 @@ class Report:
         parts = [(errors, "error"), (total - errors - notes, "warning"), (notes, "note")]
         text = ", ".join(f"{n} {what}{'s' * (n != 1)}" for n, what in parts if n or what == "error")
         hidden = total - len(self.diagnostics.found)
-        return text + (f" ({hidden} more of the same kinds not shown)" if hidden else "")
+        return text + (f" ({hidden} more of the same kinds, --limit 0 shows them)" if hidden else "")
 
     def ordered(self) -> list[Diagnostic]:
         """The findings in the order of the text."""
         return list(self.diagnostics)
+
+
+@dataclass
+class Report(Findings):
+    """Findings together with the program as the rules saw it, which takes a hundred times their memory."""
+
+    program: Program = field(kw_only=True)
+
+    def findings(self) -> Findings:
+        """The findings alone."""
+        source = Source(self.source.name, self.source.text, self.source.sha256)
+        return Findings(source, self.diagnostics, self.fixes)
 
 
 @dataclass(frozen=True)
@@ -94,7 +101,7 @@ def check(program: Program, *, gather: bool) -> Report:
     """Runs the selected rules over a prepared program; with `gather` many notes of a kind become one."""
     compiled = program.diagnostics
     selected = Selected(program.config, Ignores(program.blocks))
-    report = Report(program, Diagnostics(compiled.limit))
+    report = Report(program.source, Diagnostics(compiled.limit), program=program)
     kept = report.diagnostics
     hidden: Counter[str] = Counter()
     for found in compiled.found:

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from nccompile.diagnostics import Diagnostic, Severity
-from nccompile.lint.engine import Report
+from nccompile.lint.engine import Findings
 
 __all__ = ["to_github"]
 
 _KINDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.NOTE: "notice"}
 
 
-def to_github(reports: Sequence[Report]) -> str:
+def to_github(reports: Sequence[Findings]) -> str:
     """One command a finding."""
     return "".join(_command(found) + "\n" for report in reports for found in report.ordered())
 

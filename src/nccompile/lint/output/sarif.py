@@ -14,7 +14,7 @@ from urllib.parse import quote
 from nccompile.codes import PAGES
 from nccompile.diagnostics import Diagnostic, Severity
 from nccompile.lint.base import Fix
-from nccompile.lint.engine import Report
+from nccompile.lint.engine import Findings
 from nccompile.lint.registry import RULES
 from nccompile.version import VERSION
 
@@ -25,7 +25,7 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _LEVELS = {rule.code: str(rule.severity) for rule in RULES}
 
 
-def to_sarif(reports: Sequence[Report]) -> str:
+def to_sarif(reports: Sequence[Findings]) -> str:
     """One run with all findings; its rules are the codes that occur."""
     codes = sorted({found.code for report in reports for found in report.ordered()})
     index = {code: at for at, code in enumerate(codes)}
