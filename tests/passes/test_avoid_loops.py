@@ -95,7 +95,9 @@ def test_line_and_arc_meet_where_shapely_says(
         return
     c, d = (np.array([x + r * cos(w), y + r * sin(w)]) for w in (start, start + sweep))
     us, vs = np.zeros(48), np.zeros(48)
-    count = intersect.intersections(Kind.LINE, np.zeros(12), a, b, Kind.ARC, p, c, d, us, vs)
+    count = intersect.intersections(
+        Kind.LINE, np.zeros(12), np.hstack([a, b]), Kind.ARC, p, np.hstack([c, d]), us, vs
+    )
     for k in range(count):
         on_line = a + us[k] * (b - a)
         w = start + sweep * vs[k]

@@ -61,12 +61,16 @@ def test_outside_of_a_square_has_arcs_at_its_corners() -> None:
     out, found = corrected(ToolRadius(), square(Mark.TOOL_RIGHT))
     assert not found
     assert out.target[0, :2].tolist() == [10, -1]
-    assert [Kind(k).name for k in out.kind].count("ARC") == 3
+    assert [Kind(k).name for k in out.kind].count("ARC") == 4
+    assert out.target[-2, :2].tolist() == [10, -1]  # the corner at the start is closed, too
     ring = shapely.Polygon([(10, 0), (20, 0), (20, 10), (10, 10)]).exterior
     off = [ring.distance(shapely.Point(p)) for p in feed_points(out)]
     assert min(off) >= 1 - 1e-6
     assert max(off) <= 1 + 1e-9
-    assert out.line.tolist() == [1, 2, 2, 3, 3, 4, 4, 5, 6]
+    assert out.line.tolist() == [1, 2, 2, 3, 3, 4, 4, 5, 5, 6]
+    left_open, _ = corrected(ToolRadius(close=False), square(Mark.TOOL_RIGHT))
+    assert left_open.target[-2, :2].tolist() == [9, 0]
+    assert left_open.line.tolist() == [1, 2, 2, 3, 3, 4, 4, 5, 6]
 
 
 def test_inside_of_a_square_is_cut_at_its_corners() -> None:

@@ -2,13 +2,14 @@
 
     in        ┌───────┐              out
               │       │
-    ●─────────x───────┘  ...         ●─────────x      the walk leaves row i at its first common point with a
+    ●─────────x───────┘  ...         ●─────────x      the walk leaves row i at its first crossing with a
               │ loop                           │      later row j, goes on with the rest of j, and so forth
               ●                                ●
 
-What counts is a common point in X-Y at the same height (1e-6 mm), at least one of both rows inside of which it
-is; two joints that touch do not cross, and rows that run on each other do not either.  A closed contour is no
-loop.  M functions, dwells and switch points of a loop move to its crossing.
+What counts is a crossing in X-Y at the same height (1e-6 mm): the later part of the path comes from one side of the
+earlier part and leaves to the other.  That holds for joints and for stretches on which both run on each other, too;
+touching, running back on itself, and a contour that closes in the direction in which it began are no crossings
+(kernels.loops, docs/decisions/079).  M functions, dwells and switch points of a loop move to its crossing.
 
 Rows within reach of each other are found through a tree of boxes: about log n steps a row.  `window` limits how
 many later rows a row is compared with.
@@ -36,22 +37,17 @@ from typing import ClassVar
 
 import numpy as np
 
-from nccompile.kernels import intersect as kernels
-from nccompile.passes.base import Context, Pass, bounded, gather, region
-from nccompile.passes.edit import Draft
-from nccompile.passes.split import part_at, position_at
-from nccompile.toolpath.columns import CURVE_PARAMETERS, Floats, Kind, Mark, Plane, Toolpath
+from nccompile.geometry.tolerance import COINCIDENT
+from nccompile.kernels import expect_work
+from nccompile.kernels.boxes import box_tree, leaves
+from nccompile.kernels.loops import without_loops
+from nccompile.kernels.offset import cut_curves
+from nccompile.passes.base import Context, Flags, Pass, bounded, gather, region
+from nccompile.passes.edit import Links, Rows, compose
+from nccompile.passes.measure import deviation
+from nccompile.toolpath.columns import CURVE_PARAMETERS, Curves, Floats, Kind, Mark, Plane, Toolpath
 
-__all__ = ["AvoidLoops", "cut_loops"]
-
-_JOINT = 1e-7
-"""[mm] A common point this near to ends of both rows is a joint."""
-
-_LEVEL = 1e-6
-"""[mm] Greatest difference in height at a crossing."""
-
-_BEHIND = 1e-9
-"""Share of a row by which the next crossing lies behind the last one."""
+__all__ = ["AvoidLoops", "parts_left"]
 
 
 @dataclass(frozen=True)
@@ -66,50 +62,44 @@ class AvoidLoops(Pass):
         bounded("window", self.window, 2, 1e9, "rows")
 
     def rewrite(self, chunks: Iterator[Toolpath], context: Context) -> Iterator[Toolpath]:
-        """See the module."""
-        held: Toolpath | None = None
+        """See the module.  A run of rows that may cross each other is held in memory until it ends."""
+        held: list[tuple[Toolpath, Flags]] = []
         inside = False
         for chunk in gather(chunks):
-            held = chunk if held is None else Toolpath.join([held, chunk])
-            done, flags = self._settled(held, inside)
-            if done:
-                yield self._without_loops(held.rows(0, done), flags[:done], context)
-                _, inside = region(held.rows(0, done), int(Mark.LOOP), int(Mark.LOOP_STOP), inside)
-                held = held.rows(done, len(held))
-        if held is not None:
-            _, flags = self._settled(held, inside)
-            yield self._without_loops(held, flags, context)
-
-    def _settled(
-        self, path: Toolpath, inside: bool
-    ) -> tuple[int, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
-        """How many leading rows no later row can change, and which rows may be cut."""
-        flags, _ = region(path, int(Mark.LOOP), int(Mark.LOOP_STOP), inside)
-        flags = (flags | self.everywhere) & _cuttable(path)
-        outside = np.flatnonzero(~flags)
-        return (int(outside[-1]) + 1 if len(outside) else 0), flags
-
-    def _without_loops(
-        self, path: Toolpath, flags: np.ndarray[tuple[int], np.dtype[np.bool_]], context: Context
-    ) -> Toolpath:
-        if not flags.any():
-            return path.replace(mark=path.mark & ~np.uint16(Mark.LOOP))
-        draft = Draft(path, int(Mark.LOOP))
-        i = 0
-        while i < len(path):
-            if not flags[i]:
-                draft.copy(i)
-                i += 1
+            flags, inside = region(chunk, int(Mark.LOOP), int(Mark.LOOP_STOP), inside)
+            flags = (flags | self.everywhere) & _cuttable(chunk)
+            held.append((chunk, flags))
+            outside = np.flatnonzero(~flags)
+            if not len(outside):
                 continue
-            last = i
-            while last + 1 < len(path) and flags[last + 1]:
-                last += 1
-            context.report.counts["loops"] += cut_loops(draft, i, last + 1, self.window)
-            i = last + 1
-        return draft.build()
+            path, flags = _joined(held)
+            done = len(path) - len(chunk) + int(outside[-1]) + 1
+            yield self._without_loops(path.rows(0, done), flags[:done], context)
+            held = [(path.rows(done, len(path)), flags[done:])] if done < len(path) else []
+        if held:
+            yield self._without_loops(*_joined(held), context)
+
+    def _without_loops(self, path: Toolpath, flags: Flags, context: Context) -> Toolpath:
+        clean = path.replace(mark=path.mark & ~np.uint16(Mark.LOOP))
+        if not flags.any():
+            return clean
+        expect_work(len(path))
+        row, parts, loops = parts_left(path, flags, self.window)
+        context.report.counts["loops"] += loops
+        if not loops:
+            return clean
+        out, links = _put_in(path, row, parts)
+        if context.measure:
+            context.report.deviate(deviation(path, out, links))
+        return out
 
 
-def _cuttable(path: Toolpath) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _joined(held: list[tuple[Toolpath, Flags]]) -> tuple[Toolpath, Flags]:
+    paths, flags = zip(*held, strict=True)
+    return Toolpath.join(paths), np.concatenate(flags)
+
+
+def _cuttable(path: Toolpath) -> Flags:
     """Shape (n,): feed rows in X-Y planes; waits inside a run of them go with it."""
     kinds = path.kind
     good = ((kinds >= Kind.LINE) & (kinds <= Kind.POLYNOMIAL) & (path.profile == 0)) | (kinds >= Kind.DWELL)
@@ -118,59 +108,64 @@ def _cuttable(path: Toolpath) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     return np.asarray(good, np.bool_)
 
 
-def cut_loops(draft: Draft, first: int, end: int, window: int) -> int:
-    """Writes the rows first..end - 1 of the draft's source without their loops; returns how many were cut."""
-    path = draft.source
-    n = end - first
-    kinds = path.kind[first:end].copy()
-    rows = np.zeros((n, CURVE_PARAMETERS))
-    curved = np.flatnonzero(path.curve[first:end] >= 0)
-    rows[curved] = path.curves.parameters[path.curve[first:end][curved]]
-    begin = path.start if first == 0 else path.target[first - 1]
-    points = np.vstack([begin[None, :], path.target[first:end]])
-    size = 1
-    while size < n:
-        size *= 2
-    tree = np.empty((2 * size, 4))
-    m = kernels.box_tree(kinds, rows, points, tree)
-    out = np.zeros(2)
-    loops = 0
-    i, u = 0, 0.0
-    while i < n:
-        after = max(u + _BEHIND, 0.0) if u > 0.0 else _BEHIND
-        j = -1
-        while kinds[i] <= Kind.POLYNOMIAL:
-            j = kernels.first_crossing(kinds, rows, points, tree, m, i, after, _JOINT, window, out)
-            if j < 0 or _level(path, first + i, first + j, out):
-                break
-            after = float(out[0]) + _BEHIND
-        if j < 0:
-            _write(draft, first + i, u, 1.0)
-            i, u = i + 1, 0.0
-        else:
-            loops += 1
-            _write(draft, first + i, u, float(out[0]))
-            for wait in range(first + i + 1, first + j):
-                if path.kind[wait] > Kind.SET_POSITION:
-                    draft.add(int(path.kind[wait]), draft.target[-1], None, wait)
-            i, u = j, float(out[1])
-            if u >= 1.0 and i + 1 < n:
-                i, u = i + 1, 0.0
-    return loops
+def parts_left(path: Toolpath, flags: Flags, window: int) -> tuple[Rows, Floats, int]:
+    """What is left of a path without its loops, in order.
+
+    Args:     flags: Shape (n,), rows that may be cut; those with another row between them do not meet.
+    Returns:  rows of the path, Shape (m,);  where each begins and ends, Shape (m, 2), curve parameters;  loops cut.
+    """
+    flags = flags & _cuttable(path)
+    begin = path.starts()
+    step = (path.target - begin)[:, :2]
+    extent = (path.curve >= 0) | ((step * step).sum(axis=1) > COINCIDENT * COINCIDENT)
+    moves = flags & (path.kind <= Kind.POLYNOMIAL) & extent
+    moving = np.flatnonzero(moves)
+    n = len(moving)
+    kinds, curve = path.kind[moving], path.curve[moving].astype(np.int64)
+    table = path.curves.parameters if len(path.curves) else np.zeros((1, CURVE_PARAMETERS))
+    ends = np.hstack([begin[moving, :2], path.target[moving, :2]])
+    heights = np.stack([begin[moving, 2], path.target[moving, 2]], axis=1)
+    run = np.cumsum(~flags, dtype=np.int64)[moving]
+    tree = np.empty((2 * leaves(n), 4))
+    box_tree(kinds, curve, table, ends, tree)
+    row, parts = np.empty(2 * n, np.int64), np.empty((2 * n, 2))
+    count = without_loops(kinds, curve, table, ends, run, heights, tree, int(window), row, parts)
+    row, parts = row[:count], parts[:count]
+    jumps = (np.diff(row) != 1) | (parts[1:, 0] > 0.0) | (parts[:-1, 1] < 1.0)
+    jump = np.flatnonzero(jumps & (run[row[1:]] == run[row[:-1]]))
+    open_loops = np.zeros(n + 1, np.int64)
+    np.add.at(open_loops, row[jump], 1)
+    np.add.at(open_loops, row[jump + 1], -1)
+    inside = np.cumsum(open_loops) > 0
+    rest = np.flatnonzero(~moves)
+    in_loop = inside[np.searchsorted(moving, rest) - 1] if n else np.zeros(len(rest), np.bool_)
+    rest = rest[~in_loop | (path.kind[rest] > Kind.POLYNOMIAL)]
+    kept = parts[:, 1] > parts[:, 0]
+    row = np.concatenate([moving[row[kept]], rest])
+    parts = np.concatenate([parts[kept], np.tile([0.0, 1.0], (len(rest), 1))])
+    order = np.lexsort((parts[:, 0], row))
+    return row[order], parts[order], len(jump)
 
 
-def _level(path: Toolpath, i: int, j: int, out: Floats) -> bool:
-    """Whether both rows are at the same height at their common point."""
-    one, two = position_at(path, i, float(out[0])), position_at(path, j, float(out[1]))
-    return abs(float(one[2] - two[2])) <= _LEVEL
-
-
-def _write(draft: Draft, i: int, u0: float, u1: float) -> None:
-    """The part u0..u1 (curve parameters) of row i."""
-    path = draft.source
-    if u0 == 0.0 and u1 == 1.0:
-        draft.copy(i)
-    elif u1 > u0:
-        shape, p0, p1 = part_at(path, i, u0, u1)
-        target = path.target[i] if u1 == 1.0 else position_at(path, i, u1)
-        draft.add(int(path.kind[i]), target, shape, i, p0, p1)
+def _put_in(path: Toolpath, row: Rows, parts: Floats) -> tuple[Toolpath, Links]:
+    """The parts of rows as a path."""
+    share = parts.copy()
+    shape = path.curve[row].copy()
+    curved = np.flatnonzero(shape >= 0)
+    table = path.curves.parameters[shape[curved]].copy()
+    points = np.empty((len(curved), 2))
+    shares = share[curved].copy()
+    cut_curves(path.kind[row[curved]], table, parts[curved].copy(), shares, points)
+    share[curved] = shares
+    shape[curved] = np.arange(len(curved), dtype=np.int32)
+    begin, target = path.starts()[row], path.target[row].copy()
+    short = parts[:, 1] < 1.0
+    target[short] = (begin + share[:, 1:] * (target - begin))[short]
+    at = curved[short[curved]]
+    target[at, :2] = points[short[curved]]
+    # Waits do not move: those of a loop are where it was cut.
+    moved = np.maximum.accumulate(np.where(path.kind[row] > Kind.SET_POSITION, -1, np.arange(len(row))))
+    target = np.where(moved[:, None] < 0, path.start, target[moved])
+    links = Links(row, share[:, 0], share[:, 1], np.arange(len(row)), np.zeros(len(row)), np.ones(len(row)))
+    curves = Curves(path.curves.plane[path.curve[row[curved]]], table)
+    return compose(path, row, path.kind[row], target, shape, curves, links, clear=int(Mark.LOOP)), links

@@ -1,33 +1,34 @@
-"""One contour of tool radius correction: its rows offset, joined, led in and out (drawing: tool_radius.py).
+"""The columns of tool radius correction: what moves, its offsets, the rows they become (drawing: tool_radius.py).
 
-row i        offset pieces, first one from u0, last one to u1        joints cut u0 and u1, or add connectors
-─────────>   |──piece──|──piece──|    connector: arc about the corner, or lines
+    path ──> Moving ──> Offsets ──> Emitted ──> path
+             rows with    pieces and    new rows with their
+             extent       connectors    origin and part
+
+A contour is a run of rows with a distance; all contours of a stretch are worked on at once.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from math import atan2, cos, pi
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from nccompile.diagnostics import Severity
-from nccompile.geometry.offset import Piece, arc_about, meeting, offset, straight
 from nccompile.geometry.tolerance import COINCIDENT
-from nccompile.kernels import curves as kernels
-from nccompile.kernels.curves import ARC
+from nccompile.kernels.offset import offset_rows, shares_along
+from nccompile.kernels.offset_emit import LINKED, MOVED, emit_rows
+from nccompile.kernels.offset_joints import join_offsets
 from nccompile.passes.base import Context
-from nccompile.passes.edit import Draft
-from nccompile.toolpath.columns import CURVE_PARAMETERS, Floats, Kind, Plane
+from nccompile.passes.edit import Links, Rows, compose
+from nccompile.toolpath.columns import CURVE_PARAMETERS, Bytes, Curves, Floats, Kind, Plane, Toolpath
 
-__all__ = ["Corrected", "Row", "Style"]
+__all__ = ["Emitted", "Moving", "Offsets", "Style", "build", "emit", "moving_rows", "offset"]
 
-_TANGENT = 0.02
-"""[rad] Lines that bend less at a convex corner are extended: they meet within 5e-5 r of the arc."""
+_LEADS = ("positioning", "line", "arc")
 
-_MEETINGS = 6
-"""Pieces at both sides of a concave corner that are tried for a common point."""
+_ROOM = 16
+"""Pieces that an ellipse or cubic gets room for at first."""
 
 
 class Style(NamedTuple):
@@ -35,212 +36,167 @@ class Style(NamedTuple):
 
     corner: str
     limit: float
+    close: bool
     lead: str
     length: float
     tolerance: float
 
 
+class Moving(NamedTuple):
+    """Rows of contours with extent in X-Y.
+
+    row: Shape (m,), source row;  kinds, curve, table, ends: as in `kernels.boxes`;  d: Shape (m,) [mm], to the left;
+    contour: Shape (m,), its number;  of_row: Shape (n,), the contour of every source row, -1 outside.
+    """
+
+    row: Rows
+    kinds: Bytes
+    curve: Rows
+    table: Floats
+    ends: Floats
+    d: Floats
+    contour: Rows
+    of_row: Rows
+
+
 @dataclass
-class Row:
-    """A row of the contour with extent in X-Y: source row, ends, unit tangents there, its distance, its offset."""
+class Offsets:
+    """Offset pieces of moving rows: begin..stop - 1 of each, then its connectors (fewer than 0: across the contour).
 
-    i: int
-    kind: int
-    curve: Floats
-    a: Floats
-    b: Floats
-    t0: Floats
-    t1: Floats
-    d: float
-    pieces: list[Piece]
-    after: list[Piece] = field(default_factory=list)
+    kinds, curve, table, ends: the pieces as columns, with room for leads behind the first `count`;  part: Shape (.,
+    2), parameters of the row they stand for;  dropped: Shape (m,), rows that are left out.
+    """
 
-
-class Corrected:
-    """The offset of the source rows first..end - 1; `rows` holds those with extent in X-Y."""
-
-    def __init__(self, draft: Draft, first: int, end: int, d: Floats, style: Style, context: Context) -> None:
-        self.draft = draft
-        self.first, self.end = first, end
-        self.style = style
-        self.rows: list[Row] = []
-        self.written: list[tuple[int, Piece]] = []
-        path = draft.source
-        for i in range(first, end):
-            row = self._row(path.start if i == 0 else path.target[i - 1], i, float(d[i]), context)
-            if row is not None:
-                self.rows.append(row)
-        for one, two in zip(self.rows, self.rows[1:], strict=False):
-            self._join(one, two)
-        if len(self.rows) > 1 and float(np.abs(self.rows[0].a - self.rows[-1].b).max()) <= COINCIDENT:
-            self._close(self.rows[-1], self.rows[0])
-
-    def _row(self, start: Floats, i: int, d: float, context: Context) -> Row | None:
-        path = self.draft.source
-        kind, at = int(path.kind[i]), int(path.curve[i])
-        if kind > Kind.POLYNOMIAL:
-            return None
-        a, b = start[:2].copy(), path.target[i][:2].copy()
-        curve = np.zeros(CURVE_PARAMETERS)
-        if at >= 0:
-            curve = path.curves.parameters[at]
-            if path.curves.plane[at] != Plane.XY:
-                what = "tool radius correction acts in X-Y only, this curve runs in another plane"
-                context.find("NC303", Severity.ERROR, what, int(path.line[i]), "end it with G40 before")
-                return None
-            t0, t1 = (np.array(kernels.tangent(kind, curve, u)) for u in (0.0, 1.0))
-        else:
-            step = b - a
-            size = float(np.sqrt(step @ step))
-            if size <= COINCIDENT:
-                return None
-            t0 = t1 = step / size
-        return Row(i, kind, curve, a, b, t0, t1, d, offset(kind, curve, a, b, d, self.style.tolerance))
-
-    def _join(self, one: Row, two: Row) -> None:
-        """Makes the offsets of neighbours meet."""
-        if not one.pieces or not two.pieces:
-            return
-        e, s = one.pieces[-1].b, two.pieces[0].a
-        if float(np.abs(e - s).max()) <= COINCIDENT:
-            return
-        turn = atan2(float(one.t1[0] * two.t0[1] - one.t1[1] * two.t0[0]), float(one.t1 @ two.t0))
-        if one.d != two.d:
-            one.after = [straight(e, s)]
-        elif turn * one.d < 0.0 or abs(turn) > pi - 1e-9:
-            self._convex(one, two, turn)
-        elif not self._concave(one, two):
-            one.after = [straight(e, s)]
-
-    def _convex(self, one: Row, two: Row, turn: float) -> None:
-        corner, e, s = one.b, one.pieces[-1].b, two.pieces[0].a
-        lines = one.pieces[-1].kind < ARC and two.pieces[0].kind < ARC
-        reach = 1.0 / max(cos(0.5 * turn), 1e-9)
-        tip = corner + ((e - corner) + (s - corner)) / (1.0 + cos(turn)) if reach < 1e6 else corner
-        if lines and abs(turn) <= _TANGENT:
-            one.pieces[-1] = straight(one.pieces[-1].a, tip)
-            two.pieces[0] = straight(tip, two.pieces[0].b)
-        elif self.style.corner == "line" and reach <= self.style.limit:
-            one.after = [straight(e, tip), straight(tip, s)]
-        else:
-            one.after = [arc_about(corner, e, s, -abs(turn) if one.d > 0.0 else abs(turn))]
-
-    def _concave(self, one: Row, two: Row) -> bool:
-        """Cuts both at their common point; False if they have none."""
-        for back in range(min(_MEETINGS, len(one.pieces))):
-            for ahead in range(min(_MEETINGS, len(two.pieces))):
-                at = len(one.pieces) - 1 - back
-                found = meeting(one.pieces[at], two.pieces[ahead])
-                if found is not None and found[0] > 0.0 and found[1] < 1.0:
-                    one.pieces[at:] = [one.pieces[at].part(0.0, found[0])]
-                    rest = two.pieces[ahead].part(found[1], 1.0)
-                    two.pieces[: ahead + 1] = [rest._replace(a=one.pieces[-1].b) if rest.kind < ARC else rest]
-                    return True
-        return False
-
-    def _close(self, last: Row, first: Row) -> None:
-        """A closed contour with a concave corner at its start begins and ends at the common point."""
-        if not last.pieces or not first.pieces or last.d != first.d:
-            return
-        turn = atan2(float(last.t1[0] * first.t0[1] - last.t1[1] * first.t0[0]), float(last.t1 @ first.t0))
-        if turn * last.d > 0.0 and float(np.abs(last.pieces[-1].b - first.pieces[0].a).max()) > COINCIDENT:
-            self._concave(last, first)
-
-    def write(self, after: int) -> None:
-        """Writes the contour; after: kind of the row behind it, -1 if there is none."""
-        draft, path = self.draft, self.draft.source
-        pieces = [p for row in self.rows for p in (*row.pieces, *row.after)]
-        if not pieces:
-            for i in range(self.first, self.end):
-                draft.copy(i)
-            return
-        lead_in, lead_out = self._leads(pieces[0], pieces[-1])
-        self._approach(lead_in.a if lead_in else pieces[0].a)
-        if lead_in is not None:
-            self._put(lead_in, self._here(), self.rows[0].i)
-        by_row = {row.i: row for row in self.rows}
-        for i in range(self.first, self.end):
-            row = by_row.get(i)
-            if row is not None:
-                self._write_row(row)
-            else:
-                target = path.target[i].copy()
-                target[:2] = self._here()[:2]
-                draft.add(int(path.kind[i]), target, None, i)
-        if lead_out is not None:
-            self._put(lead_out, self._here(), self.rows[-1].i)
-        if after not in (-1, Kind.POSITIONING, Kind.SET_POSITION):
-            target = self._here().copy()
-            target[:2] = path.target[self.end - 1][:2]
-            draft.insert(Kind.POSITIONING, target, None, self.end - 1)
-
-    def _write_row(self, row: Row) -> None:
-        path = self.draft.source
-        start = path.start if row.i == 0 else path.target[row.i - 1]
-        step = path.target[row.i] - start
-        for n, piece in enumerate(row.pieces):
-            last = n == len(row.pieces) - 1
-            target = path.target[row.i].copy() if last else start + piece.p1 * step
-            target[:2] = piece.b
-            if (
-                float(np.abs(piece.b - self._here()[:2]).max()) <= COINCIDENT
-                and piece.kind < ARC
-                and not last
-            ):
-                continue
-            p0 = 0.0 if n == 0 else piece.p0
-            self.written.append((row.i, piece))
-            self.draft.add(
-                int(max(piece.kind, Kind.LINE)), target, _shape(piece), row.i, p0, 1.0 if last else piece.p1
-            )
-        if not row.pieces:
-            target = path.target[row.i].copy()
-            target[:2] = self._here()[:2]
-            self.draft.add(Kind.LINE, target, None, row.i)
-        for piece in row.after:
-            self.written.append((row.i, piece))
-            self._put(piece, self._here(), row.i)
-
-    def _put(self, piece: Piece, here: Floats, origin: int) -> None:
-        """A segment of its own in X-Y."""
-        target = here.copy()
-        target[:2] = piece.b
-        self.draft.insert(int(max(piece.kind, Kind.LINE)), target, _shape(piece), origin)
-
-    def _here(self) -> Floats:
-        return self.draft.target[-1] if self.draft.target else self.draft.source.start
-
-    def _approach(self, to: Floats) -> None:
-        """The positioning before the contour goes to `to`; if there is none, one is put in."""
-        draft = self.draft
-        if draft.kind and draft.kind[-1] == Kind.POSITIONING:
-            target = draft.target[-1].copy()
-            target[:2] = to
-            draft.target[-1] = target
-            return
-        target = self._here().copy()
-        if float(np.abs(target[:2] - to).max()) > 0.0:
-            target[:2] = to
-            draft.insert(Kind.POSITIONING, target, None, self.first)
-
-    def _leads(self, first: Piece, last: Piece) -> tuple[Piece | None, Piece | None]:
-        """Tangential lines or quarter arcs on the tool's side, before and behind the offset."""
-        style = self.style
-        if style.lead == "positioning":
-            return None, None
-        side = 1.0 if self.rows[0].d > 0.0 else -1.0
-        t0, t1 = self.rows[0].t0, self.rows[-1].t1
-        if style.lead == "line":
-            return straight(first.a - style.length * t0, first.a), straight(
-                last.b, last.b + style.length * t1
-            )
-        n0, n1 = side * np.array([-t0[1], t0[0]]), side * np.array([-t1[1], t1[0]])
-        c0, c1 = first.a + style.length * n0, last.b + style.length * n1
-        return (
-            arc_about(c0, c0 - style.length * t0, first.a, side * 0.5 * pi),
-            arc_about(c1, last.b, c1 + style.length * t1, side * 0.5 * pi),
-        )
+    begin: Rows
+    stop: Rows
+    connector: Rows
+    connectors: Rows
+    count: int
+    kinds: Bytes
+    curve: Rows
+    table: Floats
+    ends: Floats
+    part: Floats
+    dropped: Bytes
 
 
-def _shape(piece: Piece) -> tuple[int, list[float]] | None:
-    return None if piece.kind < ARC else (int(Plane.XY), piece.row.tolist())
+class Emitted(NamedTuple):
+    """The new rows: kind, source row, part 0..1 of it, piece or -1, X-Y, flags, linked part, contour or -1."""
+
+    kind: Bytes
+    origin: Rows
+    part: Floats
+    piece: Rows
+    xy: Floats
+    flags: Bytes
+    link: Floats
+    contour: Rows
+
+
+def moving_rows(path: Toolpath, d: Floats, count: int, context: Context) -> Moving:
+    """The first `count` rows with a distance d, Shape (n,), and extent in X-Y; NC303 for curves in other planes."""
+    cutting = d[:count] != 0.0
+    of_row = np.full(len(path), -1, np.int64)
+    of_row[:count] = np.where(cutting, np.cumsum(np.diff(cutting, prepend=False) & cutting) - 1, -1)
+    start = np.empty((count, 2))
+    start[0], start[1:] = path.start[:2], path.target[: count - 1, :2]
+    step = path.target[:count, :2] - start
+    curve = path.curve[:count].astype(np.int64)
+    curved = cutting & (curve >= 0)
+    plane = np.zeros(count, np.uint8)
+    plane[curved] = path.curves.plane[curve[curved]]
+    for i in np.flatnonzero(plane != Plane.XY):
+        what = "tool radius correction acts in X-Y only, this curve runs in another plane"
+        context.find("NC303", Severity.ERROR, what, int(path.line[i]), "end it with G40 before")
+    extent = np.where(curve >= 0, plane == Plane.XY, (step * step).sum(axis=1) > COINCIDENT * COINCIDENT)
+    row = np.flatnonzero(cutting & (path.kind[:count] <= Kind.POLYNOMIAL) & extent)
+    table = path.curves.parameters if len(path.curves) else np.zeros((1, CURVE_PARAMETERS))
+    ends = np.hstack([start[row], path.target[row, :2]])
+    return Moving(row, path.kind[row], curve[row], table, ends, d[row], of_row[row], of_row)
+
+
+def offset(moving: Moving, style: Style) -> Offsets:
+    """The offsets of moving rows, joined."""
+    n = len(moving.row)
+    curves = int(np.count_nonzero(moving.kinds > Kind.ARC))
+    room = n + _ROOM * curves
+    while True:
+        # Untouched memory costs nothing: connectors take at most two rows behind each piece, leads two a contour.
+        size = room + 2 * n + 1
+        out = Offsets(
+            np.empty(n + 1, np.int64), np.empty(0, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64), 0,
+            np.empty(size, np.uint8), np.empty(size, np.int64), np.empty((size, CURVE_PARAMETERS)),
+            np.empty((size, 4)), np.empty((size, 2)), np.zeros(n, np.uint8),
+        )  # fmt: skip
+        out.count = offset_rows(
+            moving.kinds, moving.curve, moving.table, moving.ends, moving.d, style.tolerance, out.begin,
+            out.kinds, out.curve, out.table, out.ends, out.part,
+        )  # fmt: skip
+        if out.count >= 0:
+            break
+        room *= 2
+    out.begin, out.stop = out.begin[:-1].copy(), out.begin[1:].copy()
+    out.count = join_offsets(
+        moving.kinds, moving.curve, moving.table, moving.ends, moving.d, moving.contour, style.close,
+        style.corner == "line", style.limit, style.tolerance, out.begin, out.stop, out.count,
+        out.kinds, out.curve, out.table, out.ends, out.part, out.connector, out.connectors,
+    )  # fmt: skip
+    leads = out.count + 2 * (int(moving.contour.max(initial=-1)) + 1) - len(out.kinds)
+    if leads > 0:
+        for name in ("kinds", "curve", "table", "ends", "part"):
+            column = getattr(out, name)
+            setattr(out, name, np.concatenate([column, np.zeros((leads, *column.shape[1:]), column.dtype)]))
+    return out
+
+
+def emit(path: Toolpath, moving: Moving, offsets: Offsets, count: int, style: Style) -> Emitted:
+    """The new rows of the first `count` source rows; adds leads to the pieces."""
+    x, y = (np.concatenate([path.start[c : c + 1], path.target[:, c]]) for c in (0, 1))
+    contours = int(moving.of_row.max(initial=-1)) + 1
+    size = count + offsets.count + 4 * contours
+    out = Emitted(
+        np.empty(size, np.uint8), np.empty(size, np.int64), np.empty(size), np.empty(size, np.int64),
+        np.empty((size, 2)), np.empty(size, np.uint8), np.empty((size, 2)), np.empty(size, np.int64),
+    )  # fmt: skip
+    n = emit_rows(
+        count, path.kind, x, y, moving.of_row, moving.row, moving.d, offsets.dropped, offsets.begin, offsets.stop,
+        offsets.connector, offsets.connectors, offsets.count, _LEADS.index(style.lead), style.length,
+        offsets.kinds, offsets.curve, offsets.table, offsets.ends, offsets.part, *out,
+    )  # fmt: skip
+    out = Emitted._make(column[:n] for column in out)
+    standing = (
+        (out.piece < 0) & (out.flags & MOVED != 0) & (out.kind > Kind.ARC - 1) & (out.kind <= Kind.POLYNOMIAL)
+    )
+    out.kind[standing] = Kind.LINE
+    free = np.flatnonzero((out.piece >= 0) & (out.flags & LINKED != 0) & (path.kind[out.origin] > Kind.ARC))
+    if len(free):
+        rows = path.curves.parameters[path.curve[out.origin[free]]]
+        for column in (out.part, out.link[:, 0], out.link[:, 1]):
+            values = column[free]
+            shares_along(path.kind[out.origin[free]], rows, values)
+            column[free] = values
+    return out
+
+
+def build(path: Toolpath, count: int, emitted: Emitted, offsets: Offsets, clear: int) -> Toolpath:
+    """The new rows as a chunk; clear: marks that have been carried out."""
+    source = path.rows(0, count)
+    origin, part = emitted.origin, emitted.part[:, None]
+    starts = source.starts()[origin]
+    target = source.target[origin]
+    inner = (part > 0.0) & (part < 1.0)
+    target = np.where(inner, starts + part * (target - starts), np.where(part > 0.0, target, starts))
+    moved = emitted.flags & MOVED != 0
+    target[moved, :2] = emitted.xy[moved]
+    curved = np.flatnonzero((emitted.piece >= 0) & (emitted.kind >= Kind.ARC))
+    shape = np.where(emitted.piece < 0, source.curve[origin], -1).astype(np.int32)
+    shape[emitted.kind < Kind.ARC] = -1
+    shape[curved] = len(source.curves) + np.arange(len(curved), dtype=np.int32)
+    curves = Curves(
+        np.concatenate([source.curves.plane, np.full(len(curved), Plane.XY, np.uint8)]),
+        np.concatenate([source.curves.parameters, offsets.table[emitted.piece[curved]]]),
+    )
+    row = np.flatnonzero(emitted.flags & LINKED != 0)
+    p0, p1 = emitted.link[row, 0].copy(), emitted.link[row, 1].copy()
+    links = Links(origin[row], p0, p1, row, np.zeros(len(row)), np.ones(len(row)))
+    return compose(source, origin, emitted.kind, target, shape, curves, links, clear=clear)

@@ -1,86 +1,279 @@
 """Gouges: places where the tool's centre path is nearer to the contour than the tool's radius.
 
-contour ──┐   ┌──          The corrected path is sampled, every sample looks for the contour through a tree
-          │ o │            of boxes.  depth = r - distance: how far the tool cuts into the contour.
-          └───┘            One finding for each source line, at its deepest place.
+contour ──┐   ┌──          depth = r - distance: how far the tool cuts into the contour, exactly for lines and arcs
+          │ o │            (kernels.gouges); one finding for each source line, at its deepest place
+          └───┘
+
+Where loop avoidance is on (G61, or gouge=loops), avoid-loops cuts the loops out.  A path that begins or ends in a
+gouge would leave it with the wrong side of a loop, so it is shortened to its first and last place that is free.  Then
+the loops are cut out on a copy, by the function that avoid-loops uses, and what is left is checked again.
 """
 
 from __future__ import annotations
 
-from math import ceil
+from typing import NamedTuple
 
 import numpy as np
 
 from nccompile.diagnostics import Severity
-from nccompile.geometry.offset import Piece
-from nccompile.kernels import curves as curve_kernels
-from nccompile.kernels import intersect as kernels
-from nccompile.kernels.curves import ARC
+from nccompile.kernels import gouges as kernels
+from nccompile.kernels.boxes import box_tree, leaves
+from nccompile.kernels.intersect import place
+from nccompile.kernels.loops import all_crossings
+from nccompile.kernels.offset import cut_curves
+from nccompile.kernels.offset_emit import CHECKED
+from nccompile.kernels.offset_joints import cut_piece
+from nccompile.passes.avoid_loops import parts_left
 from nccompile.passes.base import Context, Flags
-from nccompile.passes.correction import Corrected
-from nccompile.toolpath.columns import Floats
+from nccompile.passes.correction import Emitted, Moving, Offsets
+from nccompile.passes.edit import Rows
+from nccompile.toolpath.columns import Bytes, Floats, Kind, Toolpath
 
-__all__ = ["check_gouges", "sample_piece"]
+__all__ = ["Gouges", "Sections", "left_over", "report", "shorten"]
 
 _DEEP = 1e-6
 """[mm] A path this much too near is rounding."""
 
-_FREE = 2.5
-"""Part of the tolerance by which the offset of an ellipse or spline may be too near."""
+_FREE = 1.5
+"""Part of the tolerance by which the offset of an ellipse or spline may be too near, chords included."""
 
-_MOST = 128
-_LEAST = 8
+_SAG = 0.2
+"""Part of the tolerance by which the chords of ellipses and splines may be off."""
+
+_DIGITS = 1e-12
+"""Part of the coordinates that rounding takes."""
+
+_CUTS = 256
+"""Crossings of one row that are looked at."""
+
+_WIDE = 1e-9
+"""Part of a row between two crossings that is too small to look at."""
 
 
-def check_gouges(contour: Corrected, is_error: bool, loops_cut: Flags, context: Context) -> None:
-    """Reports NC302 where the written path of a contour is nearer to it than the tool's radius.
+class Sections(NamedTuple):
+    """Lines and arcs of a path: columns as in `kernels.boxes`, and the row each one is of."""
 
-    loops_cut: Shape (n,), rows where loop avoidance is on: there it is a warning.
+    kinds: Bytes
+    curve: Rows
+    table: Floats
+    ends: Floats
+    owner: Rows
+
+
+def sections(kinds: Bytes, curve: Rows, table: Floats, ends: Floats, sag: float) -> Sections:
+    """Segments with chords in place of ellipses and cubics, within sag [mm]."""
+    n = len(kinds)
+    if not (kinds > Kind.ARC).any():
+        return Sections(kinds, curve, table, ends, np.arange(n))
+    room = n
+    while True:
+        out = Sections(
+            np.empty(room, np.uint8),
+            np.empty(room, np.int64),
+            table,
+            np.empty((room, 4)),
+            np.empty(room, np.int64),
+        )
+        count = kernels.chords(kinds, curve, table, ends, sag, out.kinds, out.curve, out.ends, out.owner)
+        if count <= room:
+            return Sections(out.kinds[:count], out.curve[:count], table, out.ends[:count], out.owner[:count])
+        room = count
+
+
+class Gouges:
+    """The contours of a stretch, ready to be compared with paths."""
+
+    def __init__(self, moving: Moving, tolerance: float) -> None:
+        self._sag = _SAG * tolerance
+        self._rows = sections(moving.kinds, moving.curve, moving.table, moving.ends, self._sag)
+        contour = moving.contour[self._rows.owner]
+        self._radius = np.abs(moving.d[self._rows.owner])
+        self._tree = np.empty((2 * leaves(len(contour)), 4))
+        box_tree(*self._rows[:4], self._tree)
+        numbers = np.arange(int(contour.max(initial=-1)) + 1)
+        self._low, self._high = (np.searchsorted(contour, numbers, side=side) for side in ("left", "right"))
+        self._least = np.full(len(numbers), _DEEP)
+        free = np.unique(moving.contour[moving.kinds > Kind.ARC])
+        self._least[free] += _FREE * tolerance
+        size = np.zeros(len(numbers))
+        np.maximum.at(size, moving.contour, np.abs(moving.ends).max(axis=1, initial=0.0))
+        self._least += _DIGITS * size
+
+    def depths(
+        self, kinds: Bytes, curve: Rows, table: Floats, ends: Floats, contour: Rows
+    ) -> tuple[Floats, Floats]:
+        """How deep each segment cuts into its contour, Shape (k,) [mm], 0: it does not; and where, Shape (k, 2)."""
+        depth, where = np.zeros(len(kinds)), np.zeros((len(kinds), 2))
+        if not len(kinds):
+            return depth, where
+        path = sections(kinds, curve, table, ends, self._sag)
+        of = contour[path.owner]
+        least = self._least[of]
+        found, places = np.empty(len(of)), np.empty((len(of), 2))
+        kernels.deepest(
+            *path[:4],
+            self._low[of],
+            self._high[of],
+            *self._rows[:4],
+            self._radius,
+            self._tree,
+            least,
+            found,
+            places,
+        )
+        if len(of) == len(kinds):
+            return found, places
+        order = np.lexsort((found, path.owner))
+        last = order[np.searchsorted(path.owner[order], np.arange(len(kinds)), side="right") - 1]
+        return found[last], places[last]
+
+    def of_emitted(self, emitted: Emitted, offsets: Offsets) -> tuple[Floats, Floats]:
+        """`depths` of new rows; those that need not keep their distance have none."""
+        depth, where = np.zeros(len(emitted.kind)), np.zeros((len(emitted.kind), 2))
+        row = np.flatnonzero(emitted.flags & CHECKED != 0)
+        piece = emitted.piece[row]
+        depth[row], where[row] = self.depths(
+            offsets.kinds[piece],
+            offsets.curve[piece],
+            offsets.table,
+            offsets.ends[piece],
+            emitted.contour[row],
+        )
+        return depth, where
+
+
+class _Walk:
+    """The pieces of one contour in order, to find out which of its places are free of gouges."""
+
+    def __init__(
+        self, offsets: Offsets, moving: Moving, emitted: Emitted, gouges: Gouges, contour: int
+    ) -> None:
+        mine = (emitted.contour == contour) & (emitted.piece >= 0) & (emitted.piece < offsets.count)
+        self.row = emitted.origin[mine]
+        self.owner = np.searchsorted(moving.row, self.row)
+        self.piece = emitted.piece[mine]
+        self._columns = (
+            offsets.kinds[self.piece],
+            offsets.curve[self.piece],
+            offsets.table,
+            offsets.ends[self.piece],
+        )
+        self._tree = np.empty((2 * leaves(len(self.piece)), 4))
+        box_tree(*self._columns, self._tree)
+        self._gouges, self._contour = gouges, contour
+
+    def free(self, k: int) -> tuple[float, float] | None:
+        """The parameters of piece k where it begins and ends to be free; None if it is not."""
+        kinds, curve, table, ends = self._columns
+        cuts = np.empty(_CUTS)
+        cuts = cuts[: all_crossings(*self._columns, self._tree, k, cuts)]
+        wide = np.diff(cuts) > _WIDE
+        low, high = cuts[:-1][wide], cuts[1:][wide]
+        row = table[max(int(curve[k]), 0)]
+        middle = np.array([place(int(kinds[k]), row, ends[k], float(u)) * 2 for u in 0.5 * (low + high)])
+        n = len(low)
+        depth, _ = self._gouges.depths(
+            np.ones(n, np.uint8), np.full(n, -1), table, middle.reshape(n, 4), np.full(n, self._contour)
+        )
+        good = np.flatnonzero(depth == 0.0)
+        return (float(low[good[0]]), float(high[good[-1]])) if len(good) else None
+
+
+def shorten(
+    offsets: Offsets, moving: Moving, emitted: Emitted, gouges: Gouges, contours: Rows, loops: Flags
+) -> bool:
+    """Takes off contours what lies before the first and behind the last place that is free of gouges.
+
+    contours: their numbers;  loops: Shape (n,), source rows where loops are cut out.  Returns whether any changed.
     """
-    rows = contour.rows
-    if not contour.written or not rows:
-        return
-    kinds = np.array([row.kind for row in rows], np.uint8)
-    curves = np.array([row.curve for row in rows])
-    # Rows with extent in X-Y follow each other, for the others do not move there.
-    points = np.array([rows[0].a] + [row.b for row in rows])
-    size = 1
-    while size < len(kinds):
-        size *= 2
-    tree = np.empty((2 * size, 4))
-    m = kernels.box_tree(kinds, curves, points, tree)
-    radius = {row.i: abs(row.d) for row in rows}
-    free = any(row.kind > ARC for row in rows)
-    allowed = _DEEP + (_FREE * contour.style.tolerance if free else 0.0) + 1e-12 * float(np.abs(points).max())
-    worst: dict[int, tuple[float, Floats]] = {}
-    for i, piece in contour.written:
-        r = radius[i]
-        sample = sample_piece(piece, r)
-        near = np.empty(len(sample))
-        kernels.distance_within(kinds, curves, points, tree, m, sample, r, near)
-        at = int(np.argmin(near))
-        depth = r - float(near[at])
-        line = int(contour.draft.source.line[i])
-        if depth > allowed and depth > worst.get(line, (0.0, sample[0]))[0]:
-            worst[line] = depth, sample[at]
-            if loops_cut[i]:
-                context.report.counts["gouges left to avoid-loops"] += 1
-    loops = {int(contour.draft.source.line[i]) for i, _ in contour.written if loops_cut[i]}
-    for line, (depth, place) in sorted(worst.items()):
-        severity = Severity.ERROR if is_error and line not in loops else Severity.WARNING
+    changed = False
+    for contour in contours:
+        walk = _Walk(offsets, moving, emitted, gouges, int(contour))
+        count = len(walk.piece)
+        first = next(((k, found[0]) for k in range(count) if (found := walk.free(k))), None)
+        last = next(((k, found[1]) for k in reversed(range(count)) if (found := walk.free(k))), None)
+        if first is None or last is None:
+            continue
+        first = first if loops[walk.row[0]] else (0, 0.0)
+        last = last if loops[walk.row[-1]] else (count - 1, 1.0)
+        if first != (0, 0.0) or last != (count - 1, 1.0):
+            _take_off(offsets, moving, walk, first, last)
+            changed = True
+    return changed
+
+
+def _take_off(
+    offsets: Offsets, moving: Moving, walk: _Walk, first: tuple[int, float], last: tuple[int, float]
+) -> None:
+    """Leaves of a contour what lies between two places, each a piece in its order and its parameter there."""
+    one, two = (int(walk.owner[k]) for k, _ in (first, last))
+    start, end = (int(walk.piece[k]) for k, _ in (first, last))
+    mine = np.flatnonzero(moving.contour == moving.contour[one])
+    offsets.dropped[mine[(mine < one) | (mine > two)]] = 1
+    if end < offsets.stop[two] and end >= offsets.begin[two]:
+        offsets.stop[two], offsets.connectors[two] = end + 1, 0
+    else:
+        offsets.connectors[two] = np.sign(offsets.connectors[two]) * (end - offsets.connector[two] + 1)
+    if offsets.begin[one] <= start < offsets.stop[one]:
+        offsets.begin[one] = start
+    else:
+        offsets.begin[one] = offsets.stop[one]
+        offsets.connectors[one] -= start - offsets.connector[one]
+        offsets.connector[one] = start
+    ends = ((start, first[1], last[1]),) if start == end else ((start, first[1], 1.0), (end, 0.0, last[1]))
+    for piece, u0, u1 in ends:
+        cut_piece(piece, u0, u1, offsets.kinds, offsets.curve, offsets.table, offsets.ends, offsets.part)
+
+
+def left_over(
+    path: Toolpath,
+    emitted: Emitted,
+    offsets: Offsets,
+    gouges: Gouges,
+    loops: Flags,
+    depth: Floats,
+    where: Floats,
+) -> tuple[Floats, Floats]:
+    """What `depth` and `where` of new rows become when loops are cut out of the rows `loops`, all Shape (r, ...).
+
+    path: the new rows.
+    """
+    depth, where = depth.copy(), where.copy()
+    row, parts, _ = parts_left(path, loops, len(path))
+    loopy = np.flatnonzero(loops & (depth > 0.0))
+    depth[loopy] = 0.0
+    for k in np.flatnonzero(
+        np.isin(row, loopy) & (emitted.flags[row] & CHECKED != 0) & (parts[:, 1] > parts[:, 0])
+    ):
+        piece = emitted.piece[row[k]]
+        kinds, ends, part = offsets.kinds[[piece]], offsets.ends[[piece]], parts[[k]]
+        curve, table = np.minimum(offsets.curve[[piece]], 0), offsets.table[[piece]]
+        x0, y0 = place(int(kinds[0]), table[0], ends[0], float(part[0, 0]))
+        x1, y1 = place(int(kinds[0]), table[0], ends[0], float(part[0, 1]))
+        if curve[0] >= 0:
+            cut_curves(kinds, table, part, np.empty((1, 2)), np.empty((1, 2)))
+        found, place_of = gouges.depths(
+            kinds, curve, table, np.array([[x0, y0, x1, y1]]), emitted.contour[row[[k]]]
+        )
+        if found[0] > depth[row[k]]:
+            depth[row[k]], where[row[k]] = found[0], place_of[0]
+    return depth, where
+
+
+def report(
+    path: Toolpath, depth: Floats, where: Floats, loops: Flags, is_error: bool, context: Context
+) -> None:
+    """NC302 for every source line of the new rows `path` with a depth above 0, at its deepest place.
+
+    loops: Shape (r,), rows where the gouge is cut out later: there it is a warning.
+    """
+    deep = np.flatnonzero(depth > 0.0)
+    context.report.counts["gouges left to avoid-loops"] += int(np.count_nonzero(loops[deep]))
+    deep = deep[np.lexsort((-depth[deep], path.line[deep]))]
+    for i in deep[np.diff(path.line[deep], prepend=-1) != 0]:
+        severity = Severity.ERROR if is_error and not loops[i] else Severity.WARNING
         context.find(
             "NC302", severity,
-            f"the tool would cut {depth:.4g} mm into the contour at X{place[0]:.4g} Y{place[1]:.4g}",
-            line, "use a smaller tool, or cut such places out with G61 and avoid-loops",
+            f"the tool would cut {depth[i]:.4g} mm into the contour at X{where[i, 0]:.4g} Y{where[i, 1]:.4g}",
+            int(path.line[i]), "use a smaller tool, or cut such places out with G61 and avoid-loops",
         )  # fmt: skip
-
-
-def sample_piece(piece: Piece, r: float) -> Floats:
-    """Points along a piece, at most r / 4 apart where that takes no more than 128. Shape (s, 2)."""
-    if piece.kind < ARC:
-        step = piece.b - piece.a
-        count = min(max(ceil(4.0 * float(np.sqrt(step @ step)) / r), _LEAST), _MOST)
-        return np.asarray(piece.a + np.linspace(0.0, 1.0, count + 1)[:, None] * step)
-    length = curve_kernels.in_plane_length(piece.kind, piece.row)
-    count = min(max(ceil(4.0 * length / r), _LEAST), _MOST)
-    return np.array([curve_kernels.point(piece.kind, piece.row, u / count) for u in range(count + 1)])

@@ -1,0 +1,261 @@
+"""The rows of a corrected path, in order: copies, approaches, leads, offset pieces with their connectors, departures.
+
+    G0 ·········┐  shifted to the start of the offset (or put in), then the lead-in, the pieces, the lead-out,
+                v  and a positioning back to the contour unless one follows
+    contour ────┴──────────
+
+A new row takes its columns from the source row `origin`, and the axes beside X and Y at the part `part` of it.
+"""
+
+from math import atan2, pi, sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from nccompile.kernels import kernel
+from nccompile.kernels.boxes import Kinds, Rows
+from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, tangent
+
+__all__ = ["CHECKED", "LINKED", "MOVED", "emit_rows"]
+
+Bytes = npt.NDArray[np.uint8]
+
+MOVED = 1
+"""Flag of a new row whose X and Y are not those of its origin."""
+LINKED = 2
+"""Flag of a new row that stands for a part of its origin."""
+CHECKED = 4
+"""Flag of a new row along which the tool must keep its distance."""
+
+_POSITIONING = 0
+_LINE = 1
+_SET_POSITION = 5
+_COINCIDENT = 1e-9  # [mm], as geometry.tolerance.COINCIDENT
+
+
+@kernel
+def _heading(at: int, u: float, kind: Kinds, curve: Rows, table: Floats, ends: Floats) -> tuple[float, float]:
+    """Unit tangent of a piece; (0, 0) if it is a point."""
+    if ARC <= kind[at] <= POLYNOMIAL:
+        return tangent(int(kind[at]), table[int(curve[at])], u)
+    dx = float(ends[at, 2]) - float(ends[at, 0])
+    dy = float(ends[at, 3]) - float(ends[at, 1])
+    size = sqrt(dx * dx + dy * dy)
+    if size == 0.0:
+        return 0.0, 0.0
+    return dx / size, dy / size
+
+
+@kernel
+def _lead(
+    at: int, piece: int, is_in: bool, style: int, length: float, side: float,
+    kind: Kinds, curve: Rows, table: Floats, ends: Floats,
+) -> None:  # fmt: skip
+    """Row `at` of the table becomes the lead into the start, or out of the end, of a piece: line (1), arc (2)."""
+    tx, ty = _heading(piece, 0.0 if is_in else 1.0, kind, curve, table, ends)
+    x = float(ends[piece, 0] if is_in else ends[piece, 2])
+    y = float(ends[piece, 1] if is_in else ends[piece, 3])
+    way = -length if is_in else length
+    kind[at] = 1
+    curve[at] = -1
+    ax = x + way * tx
+    ay = y + way * ty
+    if style == 2:
+        cx = x - side * length * ty
+        cy = y + side * length * tx
+        ax = cx + way * tx
+        ay = cy + way * ty
+        kind[at] = ARC
+        curve[at] = at
+        for c in range(12):
+            table[at, c] = 0.0
+        table[at, 0] = cx
+        table[at, 1] = cy
+        table[at, 2] = length
+        table[at, 3] = atan2(ay - cy, ax - cx) if is_in else atan2(y - cy, x - cx)
+        table[at, 4] = side * 0.5 * pi
+    ends[at, 0] = ax if is_in else x
+    ends[at, 1] = ay if is_in else y
+    ends[at, 2] = x if is_in else ax
+    ends[at, 3] = y if is_in else ay
+
+
+@kernel
+def emit_rows(
+    count: int, kind: Bytes, x: Floats, y: Floats, contour: Rows, moving: Rows, d: Floats, dropped: Bytes,
+    begin: Rows, stop: Rows, connector: Rows, connectors: Rows, pieces: int, style: int, length: float,
+    piece_kind: Kinds, piece_curve: Rows, piece_table: Floats, piece_ends: Floats, piece_part: Floats,
+    out_kind: Bytes, out_origin: Rows, out_part: Floats, out_piece: Rows, out_xy: Floats, out_flags: Bytes,
+    out_link: Floats, out_contour: Rows,
+) -> int:  # fmt: skip
+    """Writes the new rows of the first `count` source rows.
+
+    Args:     kind: Shape (n,), of all source rows;  x, y: Shape (n + 1,), the start and their ends;  contour: Shape
+              (n,), from 0, -1 outside;  moving: Shape (m,), source rows with extent in contours;  d, begin, stop,
+              connector, connectors: Shape (m,), as in `join_offsets`;  dropped: Shape (m,), those that are left out;
+              pieces: rows in the table so far;  style: leads: 0 none, 1 lines, 2 arcs, of `length` [mm];
+              out_link: Shape (., 2), the parameters u of the origin it stands for;  out_piece: row of the table or -1.
+    Returns:  the number of new rows.
+    """
+    at = 0
+    k = 0
+    i = 0
+    hx = float(x[0])
+    hy = float(y[0])
+    while i < count:
+        g = int(contour[i])
+        end = i + 1
+        last_k = k
+        first_piece = -1
+        last_piece = -1
+        lead_at = -1  # moving row in front of which the lead-in stands
+        trail_at = -1
+        if g >= 0:
+            while end < count and contour[end] == g:
+                end += 1
+            while last_k < len(moving) and moving[last_k] < end:
+                has_pieces = begin[last_k] < stop[last_k]
+                if dropped[last_k] == 0 and (has_pieces or connectors[last_k] != 0):
+                    if first_piece < 0:
+                        first_piece = int(begin[last_k] if has_pieces else connector[last_k])
+                        lead_at = last_k
+                    last_piece = int(stop[last_k]) - 1
+                    trail_at = last_k
+                    if connectors[last_k] != 0:
+                        last_piece = int(connector[last_k]) + abs(int(connectors[last_k])) - 1
+                last_k += 1
+        if first_piece < 0:
+            for r in range(i, end):
+                out_kind[at] = kind[r]
+                out_origin[at] = r
+                out_part[at] = 1.0
+                out_piece[at] = -1
+                out_flags[at] = LINKED
+                out_link[at, 0] = 0.0
+                out_link[at, 1] = 1.0
+                out_contour[at] = -1
+                at += 1
+            hx = float(x[end])
+            hy = float(y[end])
+            k = last_k
+            i = end
+            continue
+        side = 1.0 if d[lead_at] > 0.0 else -1.0
+        tx, ty = float(piece_ends[first_piece, 0]), float(piece_ends[first_piece, 1])
+        if style > 0:
+            _lead(
+                pieces,
+                first_piece,
+                True,
+                style,
+                length,
+                side,
+                piece_kind,
+                piece_curve,
+                piece_table,
+                piece_ends,
+            )
+            _lead(
+                pieces + 1, last_piece, False, style, length, side, piece_kind, piece_curve, piece_table, piece_ends
+            )  # fmt: skip
+            tx, ty = float(piece_ends[pieces, 0]), float(piece_ends[pieces, 1])
+        if at > 0 and out_kind[at - 1] == _POSITIONING:
+            out_xy[at - 1, 0] = tx
+            out_xy[at - 1, 1] = ty
+            out_flags[at - 1] |= MOVED
+        elif max(abs(hx - tx), abs(hy - ty)) > 0.0:
+            out_kind[at] = _POSITIONING
+            out_origin[at] = i
+            out_part[at] = 0.0
+            out_piece[at] = -1
+            out_xy[at, 0] = tx
+            out_xy[at, 1] = ty
+            out_flags[at] = MOVED
+            out_contour[at] = -1
+            at += 1
+        hx = tx
+        hy = ty
+        for r in range(i, end):
+            if k < last_k and moving[k] == r:
+                for stage in range(4):  # lead-in, pieces, connectors, lead-out
+                    low = 0
+                    high = 0
+                    if dropped[k] == 1:
+                        break
+                    if stage == 0 and style > 0 and k == lead_at:
+                        low = pieces
+                        high = pieces + 1
+                    elif stage == 1:
+                        low = int(begin[k])
+                        high = int(stop[k])
+                    elif stage == 2 and connectors[k] != 0:
+                        low = int(connector[k])
+                        high = low + abs(int(connectors[k]))
+                    elif stage == 3 and style > 0 and k == trail_at:
+                        low = pieces + 1
+                        high = pieces + 2
+                    if stage == 1 and low >= high:
+                        out_kind[at] = _LINE
+                        out_origin[at] = r
+                        out_part[at] = 1.0
+                        out_piece[at] = -1
+                        out_xy[at, 0] = hx
+                        out_xy[at, 1] = hy
+                        out_flags[at] = MOVED | LINKED
+                        out_link[at, 0] = 0.0
+                        out_link[at, 1] = 1.0
+                        out_contour[at] = g
+                        at += 1
+                    for q in range(low, high):
+                        is_last = q == high - 1
+                        if (
+                            stage == 1 and not is_last and piece_kind[q] < ARC
+                            and max(abs(piece_ends[q, 2] - hx), abs(piece_ends[q, 3] - hy)) <= _COINCIDENT
+                        ):  # fmt: skip
+                            continue
+                        hx = float(piece_ends[q, 2])
+                        hy = float(piece_ends[q, 3])
+                        out_kind[at] = piece_kind[q]
+                        out_origin[at] = r
+                        out_piece[at] = q
+                        out_xy[at, 0] = hx
+                        out_xy[at, 1] = hy
+                        out_flags[at] = MOVED | CHECKED
+                        out_contour[at] = g
+                        out_part[at] = 0.0 if stage == 0 else 1.0
+                        if stage == 1:
+                            out_flags[at] |= LINKED
+                            out_part[at] = 1.0 if is_last else float(piece_part[q, 1])
+                            out_link[at, 0] = 0.0 if q == low else float(piece_part[q, 0])
+                            out_link[at, 1] = out_part[at]
+                        elif stage == 2 and connectors[k] < 0:
+                            out_flags[at] = MOVED
+                        at += 1
+                k += 1
+            else:
+                out_kind[at] = kind[r]
+                out_origin[at] = r
+                out_part[at] = 1.0
+                out_piece[at] = -1
+                out_xy[at, 0] = hx
+                out_xy[at, 1] = hy
+                out_flags[at] = MOVED | LINKED
+                out_link[at, 0] = 0.0
+                out_link[at, 1] = 1.0
+                out_contour[at] = g
+                at += 1
+        if style > 0:
+            pieces += 2
+        after = int(kind[end]) if end < len(kind) else _SET_POSITION
+        if after != _POSITIONING and after != _SET_POSITION:
+            out_kind[at] = _POSITIONING
+            out_origin[at] = end - 1
+            out_part[at] = 1.0
+            out_piece[at] = -1
+            out_flags[at] = 0
+            out_contour[at] = -1
+            hx = float(x[end])
+            hy = float(y[end])
+            at += 1
+        i = end
+    return at
