@@ -8,10 +8,12 @@ from math import cos, sin
 import numpy as np
 from hypothesis import strategies as st
 
+from nccompile.geometry.parts import Way, curvature_at, tangent_at
 from nccompile.kernels import curves as kernels
+from nccompile.kernels.distance import place_on
 from nccompile.passes.base import Context, Pass, Report
-from nccompile.toolpath.columns import Curves, EventKind, Events, Floats, Kind, Mark, Toolpath
-from nccompile.toolpath.lengths import path_lengths
+from nccompile.toolpath.columns import Curves, EventKind, Events, Floats, Kind, Mark, Plane, Toolpath
+from nccompile.toolpath.lengths import THIRD_AXIS, path_lengths
 from nccompile.toolpath.verify import verify_chain
 
 AXES = ("X", "Y", "Z", "A")
@@ -115,6 +117,43 @@ class Sketch:
             curves=Curves.from_rows(self.curves), events=Events.from_rows(self.events),
         )  # fmt: skip
         return path.replace(length=path_lengths(path))
+
+
+class Probe:
+    """Point, direction and curvature along row i of a path; s in mm from its start."""
+
+    def __init__(self, path: Toolpath, i: int) -> None:
+        self.kind, self.length = int(path.kind[i]), float(path.length[i])
+        self.start, self.end = path.starts()[i], path.target[i]
+        row = int(path.curve[i])
+        self.plane = -1 if row < 0 else int(path.curves.plane[row])
+        self.p: Floats = np.zeros(12) if row < 0 else path.curves.parameters[row]
+        self.way = None if row < 0 else Way(self.kind, self.p.tolist())
+
+    def _u(self, s: float) -> float:
+        return s / self.length if self.way is None else self.way.parameter(s / self.length)
+
+    def point(self, s: float) -> Floats:
+        """X, Y, Z."""
+        return np.array(place_on(self.kind, self.plane, self.p, self.start, self.end, self._u(s)))
+
+    def tangent(self, s: float) -> Floats:
+        """Unit vector."""
+        if self.way is None:
+            step = (self.end - self.start)[:3]
+            return np.asarray(step / np.linalg.norm(step))
+        rise = 0.0
+        if self.plane != Plane.SPACE:
+            third = THIRD_AXIS[self.plane]
+            rise = float(self.end[third] - self.start[third]) / self.way.length
+        return np.array(tangent_at(self.kind, self.plane, self.p, self._u(s), rise))
+
+    def curvature(self, s: float) -> Floats:
+        """Vector [1/mm]."""
+        if self.way is None:
+            return np.zeros(3)
+        slant = 1.0 if self.plane == Plane.SPACE else self.way.length / self.length
+        return slant * slant * np.array(curvature_at(self.kind, self.plane, self.p, self._u(s)))
 
 
 def run(p: Pass, path: Toolpath, size: int = 0) -> tuple[Toolpath, Report]:

@@ -11,23 +11,36 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from nccompile.toolpath.columns import Bytes, Curves, EventKind, Events, Floats, Ints, Kind, Mark, Toolpath
+from nccompile.toolpath.columns import (
+    CURVE_PARAMETERS,
+    Bytes,
+    Curves,
+    EventKind,
+    Events,
+    Floats,
+    Ints,
+    Kind,
+    Mark,
+    Toolpath,
+)
 from nccompile.toolpath.lengths import path_lengths
 
 __all__ = [
     "STARTS",
     "STOPS",
     "Draft",
+    "Geometry",
     "Link",
     "Links",
     "Rows",
     "Shape",
     "compose",
+    "geometry",
     "is_motion",
     "linked",
     "place",
@@ -42,6 +55,27 @@ STOPS = int(Mark.TOOL_STOP | Mark.CORNER_STOP | Mark.LOOP_STOP)
 Link: TypeAlias = tuple[int, float, float, int, float, float]
 Shape: TypeAlias = tuple[int, Sequence[float]]
 Rows: TypeAlias = npt.NDArray[np.intp]
+
+
+class Geometry(NamedTuple):
+    """A path as kernels take it: kinds, planes, curve rows, Shape (n, 12), and X-Y-Z positions, Shape (n + 1, 3)."""
+
+    kinds: Bytes
+    planes: npt.NDArray[np.int64]
+    rows: Floats
+    points: Floats
+
+
+def geometry(path: Toolpath) -> Geometry:
+    """The geometry of a chunk, one row a segment; straight ones have rows of zeros."""
+    n = len(path)
+    planes = np.zeros(n, np.int64)
+    rows = np.zeros((n, CURVE_PARAMETERS))
+    curved = np.flatnonzero(path.curve >= 0)
+    planes[curved] = path.curves.plane[path.curve[curved]]
+    rows[curved] = path.curves.parameters[path.curve[curved]]
+    points = np.vstack([path.start[None, :3], path.target[:, :3]])
+    return Geometry(path.kind, planes, rows, np.ascontiguousarray(points))
 
 
 @dataclass(frozen=True)
@@ -74,6 +108,18 @@ class Links:
         i, p0, p1, r, q0, q1 = table.T
         return cls(i.astype(np.intp), p0.copy(), p1.copy(), r.astype(np.intp), q0.copy(), q1.copy())
 
+    @classmethod
+    def merged(cls, parts: Sequence[Links]) -> Links:
+        """All links of several parts, in order."""
+        segment, row = (
+            np.concatenate([getattr(part, name) for part in parts]) for name in ("segment", "row")
+        )
+        p0, p1, q0, q1 = (
+            np.concatenate([getattr(part, name) for part in parts]) for name in ("p0", "p1", "q0", "q1")
+        )
+        order = np.lexsort((row, p0, segment))
+        return cls(segment[order], p0[order], p1[order], row[order], q0[order], q1[order])
+
 
 def place(links: Links, segment: int, position: float) -> tuple[int, float]:
     """Where a point of a source segment went, as (row, position 0..1).
@@ -101,13 +147,14 @@ def place(links: Links, segment: int, position: float) -> tuple[int, float]:
 
 def compose(
     source: Toolpath, origin: Rows, kind: Bytes, target: Floats, shape: Ints, curves: Curves, links: Links,
-    feed: Floats | None = None, clear: int = 0,
+    feed: Floats | None = None, clear: int = 0, known: Floats | None = None,
 ) -> Toolpath:  # fmt: skip
     """A chunk of new rows that starts where `source` starts.
 
     Args:     origin: Shape (n,), source row whose feed, accelerations, D, S-profile and line each row takes;
               kind, target: as in Toolpath;  shape: Shape (n,), row in `curves` or -1;  links: for events;
-              feed: Shape (n,) [mm/s], None: that of the origin;  clear: marks that have been carried out.
+              feed: Shape (n,) [mm/s], None: that of the origin;  clear: marks that have been carried out;
+              known: lengths of curves (`path_lengths`).
     """
     n = len(origin)
     curved = np.flatnonzero(shape >= 0)
@@ -133,7 +180,7 @@ def compose(
         first=source.first,
         names=source.names,
     )
-    return path.replace(length=path_lengths(path))
+    return path.replace(length=path_lengths(path, known))
 
 
 def _marks(source: Toolpath, origin: Rows, clear: int) -> npt.NDArray[np.uint16]:

@@ -4,7 +4,7 @@
          `, │                         at most half the shorter neighbour
            ', b        two lines:    one cubic with control points a, V, V, b (curvature 0 at both ends)
             │          with curves:  three cubics, C2 inside, with tangent and curvature of the rows at
-            ●                        a and b (geometry/corners.py)
+            ●                        a and b (kernels/blends.py)
 
 Example:
     -p smooth-corners{distance=2,everywhere}
@@ -23,19 +23,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
-from nccompile.geometry.corners import blend, blend_of_lines
-from nccompile.passes.base import bounded
-from nccompile.passes.corners import Corner, CornerPass, Filler, Leg
-from nccompile.toolpath.columns import Floats, Kind, Mark, Plane
+from nccompile.kernels.blends import blend_corners
+from nccompile.passes.base import Flags, bounded
+from nccompile.passes.corners import CornerPass, Fillings, Legs
+from nccompile.toolpath.columns import Mark
+from nccompile.units import rad_from_deg
 
 __all__ = ["SmoothCorners"]
-
-_SHORTEST = 1e-6
-"""[mm] Cuts below this are not worth a segment."""
-
-_SHARPEST = np.pi - 1e-3
 
 
 @dataclass(frozen=True)
@@ -50,42 +44,9 @@ class SmoothCorners(CornerPass):
         super().__post_init__()
         bounded("distance", self.distance, 0.0, 1e6, "mm")
 
-    def fill(self, a: Leg, b: Leg, turn: float, d: float) -> Corner | None:
+    def fill(self, legs: Legs, may: Flags, out: Fillings) -> int:
         """See the module."""
-        reach = min(self.distance + d, a.room, b.room)
-        if reach <= _SHORTEST or turn > _SHARPEST:
-            return None
-        corner = b.point(0.0)
-        sa, sb = a.length - _cut(a, corner, reach, True), _cut(b, corner, reach, False)
-        p0, p1 = a.point(sa), b.point(sb)
-        if a.is_line and b.is_line:
-            cubics = blend_of_lines(p0, corner, p1)
-        else:
-            size = a.length - sa + sb
-            chord = float(np.sqrt((p1 - p0) @ (p1 - p0)))
-            cubics = blend(
-                p0, a.tangent(sa), a.curvature(sa), p1, b.tangent(sb), b.curvature(sb), 0.5 * (size + chord)
-            )
-        flat = a.is_flat and b.is_flat
-        share = 1.0 / len(cubics)
-        return Corner(a.length - sa, sb, [_piece(c, flat, share) for c in cubics])
-
-
-def _piece(c: Floats, flat: bool, share: float) -> Filler:
-    plane = Plane.XY if flat else Plane.SPACE
-    return Filler(Kind.POLYNOMIAL, c.sum(axis=1), (int(plane), c[: 2 if flat else 3].ravel().tolist()), share)
-
-
-def _cut(leg: Leg, corner: Floats, reach: float, at_end: bool) -> float:
-    """The length to cut off so that the cut is `reach` from the corner, at most the leg's room."""
-    if leg.is_line:
-        return reach
-    low, high = 0.0, leg.room
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        off = leg.point(leg.length - middle if at_end else middle) - corner
-        if float(off @ off) < reach * reach:
-            low = middle
-        else:
-            high = middle
-    return high
+        return blend_corners(
+            *legs.geometry, legs.length, legs.room, may, legs.d + self.distance, rad_from_deg(self.angle), out.before,
+            out.after, out.found, out.pieces, out.kind, out.plane, out.rows, out.size,
+        )  # fmt: skip

@@ -95,8 +95,11 @@ def straight_lengths(delta: Floats, profile: Words) -> Floats:
     return length
 
 
-def path_lengths(path: Toolpath) -> Floats:
-    """Path lengths of all segments of a chunk, from its geometry. Shape (n,) [mm]."""
+def path_lengths(path: Toolpath, known: Floats | None = None) -> Floats:
+    """Path lengths of all segments of a chunk, from its geometry. Shape (n,) [mm].
+
+    known: Shape (n,), lengths of curves in their plane that whoever made them has computed already, 0: not known.
+    """
     delta = path.target - path.starts()
     length = straight_lengths(delta, path.profile)
     length[np.isin(path.kind, _STANDING)] = 0.0
@@ -105,7 +108,9 @@ def path_lengths(path: Toolpath) -> Floats:
         return length
     rows = path.curve[curved]
     plane = path.curves.plane[rows]
-    inside = _in_plane(path.kind[curved], path.curves.parameters[rows])
+    inside = np.zeros(len(curved)) if known is None else known[curved]
+    rest = np.flatnonzero(inside == 0.0)
+    inside[rest] = _in_plane(path.kind[curved[rest]], path.curves.parameters[rows[rest]])
     third = np.array([THIRD_AXIS[Plane.XY], THIRD_AXIS[Plane.ZX], THIRD_AXIS[Plane.YZ], 0])[plane]
     rise = delta[curved, third]
     flat = (plane == Plane.SPACE) | (path.profile[curved] >> third & 1 == 1)

@@ -1,0 +1,313 @@
+r"""Arcs in corners: the kernel of the pass `round-corners`.
+
+    ●────────a──V        two lines      |aV| = |Vb| = r tan(turn / 2)
+              `.│        in one plane   the centre C is r away from both segments:
+                b                       A(s) + r n(s) = C = B(s') + r n(s'),    Newton in (s, s')
+                │        in space       two lines: cubics off the arc by less than a tolerance; with curves there is
+                ●                       in general no such arc: the spline of `kernels.blends` between the same cuts
+
+The corner is not farther than r from the path:  r / cos(turn / 2) - r  for turns up to 120 degrees; at sharper
+ones the arc is smaller, with  |aV| tan(turn / 4) = r.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, pi, sin, sqrt, tan
+
+import numpy as np
+import numpy.typing as npt
+
+from nccompile.kernels import kernel
+from nccompile.kernels.arcs import through
+from nccompile.kernels.blends import blend
+from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats
+from nccompile.kernels.curves import NODES, in_plane_length
+from nccompile.kernels.legs import STATE, common_plane, leg_at, reach_along, tabulate_leg, turn_between
+
+__all__ = ["round_corners"]
+
+_SHORTEST = 1e-6  # [mm] cuts below this are not worth a segment
+_SHARPEST = 3.1405926535897932  # a path that turns back has no arc that touches both ways
+_CORNER, _LEFT = 1, 2
+_SPACE = 3
+
+_STEPS = 30  # of Newton's method, which needs about five
+_REACHED = 1e-12  # of the largest coordinate
+_TRIES = 40  # of the search for the greatest arc that fits
+_ENOUGH = 24
+_SPLIT = 1e-3  # relative: the radius found is at most this much too small
+_FLAT = 1e-12  # determinant of Newton's matrix below which both segments are parallel
+
+_QUARTER_MISS = (
+    2.8e-4  # of the radius: the farthest a cubic is from an arc of 90 degrees; it falls with the 6th power
+)
+_MOST_PIECES = 32
+
+
+@kernel
+def _u_of(plane: int) -> int:
+    """The first axis of a plane 0..2: X, Z, Y."""
+    return 0 if plane == 0 else 3 - plane
+
+
+@kernel
+def _v_of(plane: int) -> int:
+    """The second axis of a plane 0..2: Y, X, Z."""
+    return 1 if plane == 0 else (0 if plane == 1 else 2)
+
+
+@kernel
+def _arc_row(one: Floats, two: Floats, plane: int, cx: float, cy: float, left: bool, out: Floats) -> None:
+    """The arc between two states; its centre is moved onto their bisector, so that both ends are exact."""
+    u = _u_of(plane)
+    v = _v_of(plane)
+    x0 = float(one[u])
+    y0 = float(one[v])
+    x1 = float(two[u])
+    y1 = float(two[v])
+    dx = x1 - x0
+    dy = y1 - y0
+    off = ((cx - x0 - 0.5 * dx) * dx + (cy - y0 - 0.5 * dy) * dy) / (dx * dx + dy * dy)
+    out[:] = 0.0
+    through(x0, y0, x1, y1, cx - off * dx, cy - off * dy, left, out)
+
+
+@kernel
+def _pieces_of(radius: float, turn: float, tolerance: float) -> int:
+    """How many cubics keep within the tolerance of an arc in space."""
+    count = int(np.ceil(turn / (0.5 * pi) - 1e-9))
+    while count < _MOST_PIECES:
+        q = turn / (count * 0.5 * pi)
+        square = q * q
+        if _QUARTER_MISS * radius * square * square * square <= tolerance:
+            break
+        count += 1
+    return count
+
+
+@kernel
+def _space_arc(one: Floats, two: Floats, turn: float, radius: float, count: int, rows: Floats) -> None:
+    """Cubics for the arc from state `one` to `two` in a tilted plane: rows, Shape (>= count, 12).
+
+    Tangents of length 4 tan(turn / 4) r at both ends, as powers: three times the distance of the control points.
+    """
+    part = turn / count
+    size = 4.0 * tan(0.25 * part) * radius
+    for c in range(3):
+        along = float(one[3 + c])
+        inward = (float(two[3 + c]) - along * cos(turn)) / sin(turn)
+        center = float(one[c]) + radius * inward
+        p0 = float(one[c])
+        d0 = size * along
+        for k in range(count):
+            cosine = cos(part * (k + 1))
+            sine = sin(part * (k + 1))
+            p1 = float(two[c]) if k == count - 1 else center - radius * (cosine * inward - sine * along)
+            d1 = size * (cosine * along + sine * inward)
+            step = p1 - p0
+            rows[k, 4 * c] = p0
+            rows[k, 4 * c + 1] = d0
+            rows[k, 4 * c + 2] = 3.0 * step - 2.0 * d0 - d1
+            rows[k, 4 * c + 3] = d0 + d1 - 2.0 * step
+            p0 = p1
+            d0 = d1
+
+
+@kernel
+def round_corners(
+    kinds: npt.NDArray[np.uint8], planes: npt.NDArray[np.int64], rows: Floats, points: Floats, length: Floats,
+    room: Floats, may: npt.NDArray[np.bool_], wanted: Floats, is_distance: bool, tolerance: float, angle: float,
+    before: Floats, after: Floats, found: npt.NDArray[np.uint8], pieces: npt.NDArray[np.int64],
+    piece_kind: npt.NDArray[np.uint8], piece_plane: npt.NDArray[np.int64], piece_rows: Floats, piece_length: Floats,
+) -> int:  # fmt: skip
+    """Fills corners as `kernels.blends.blend_corners`, with arcs.
+
+    Args:     wanted: Shape (n,), radius of the arc behind row i, or with is_distance the distance of the cuts [mm];
+              tolerance: of arcs in tilted planes [mm];  the others as there.
+    Returns:  number of pieces, -1 if there were more than the arrays hold.
+    """
+    nodes = np.empty((4, NODES))
+    one = np.empty(STATE)
+    two = np.empty(STATE)
+    scratch = np.empty(STATE)
+    cuts = np.empty(4)
+    count = 0
+    for i in range(len(may)):
+        if not may[i]:
+            continue
+        if count + _MOST_PIECES > len(piece_kind):
+            return -1
+        j = i + 1
+        ka = int(kinds[i])
+        kb = int(kinds[j])
+        pa = int(planes[i])
+        pb = int(planes[j])
+        la = float(length[i])
+        lb = float(length[j])
+        na = tabulate_leg(ka, rows[i], nodes[0], nodes[1])
+        nb = tabulate_leg(kb, rows[j], nodes[2], nodes[3])
+        leg_at(ka, pa, rows[i], points[i], points[j], la, nodes[0], nodes[1], na, la, one)
+        leg_at(kb, pb, rows[j], points[j], points[j + 1], lb, nodes[2], nodes[3], nb, 0.0, two)
+        turn = turn_between(one, two)
+        if turn <= angle:
+            continue
+        found[i] = _LEFT
+        r = float(wanted[i])
+        short = min(float(room[i]), float(room[j]))
+        if turn > _SHARPEST or r <= 0.0 or short <= _SHORTEST:
+            continue
+        half = tan(0.5 * turn)
+        reach = min(r if is_distance else min(r * half, r / tan(0.25 * turn)), short)
+        if reach <= _SHORTEST:
+            continue
+        plane = common_plane(ka, pa, kb, pb, points[i], points[j], points[j + 1])
+        number = 1
+        at_a = reach
+        at_b = reach
+        if plane >= 0 and (na > 0 or nb > 0):
+            ok = _greatest(
+                ka, pa, rows[i], points[i], points[j], la, na, float(room[i]),
+                kb, pb, rows[j], points[j + 1], lb, nb, float(room[j]),
+                nodes, plane, reach / half, one, two, cuts, piece_rows[count],
+            )  # fmt: skip
+            if not ok:
+                continue
+            at_a = float(cuts[0])
+            at_b = float(cuts[1])
+        else:
+            at_a = reach_along(
+                ka,
+                pa,
+                rows[i],
+                points[i],
+                points[j],
+                la,
+                nodes[0],
+                nodes[1],
+                na,
+                reach,
+                float(room[i]),
+                True,
+                scratch,
+            )
+            at_b = reach_along(
+                kb, pb, rows[j], points[j], points[j + 1], lb, nodes[2], nodes[3], nb, reach, float(room[j]), False,
+                scratch,
+            )  # fmt: skip
+            leg_at(ka, pa, rows[i], points[i], points[j], la, nodes[0], nodes[1], na, la - at_a, one)
+            leg_at(kb, pb, rows[j], points[j], points[j + 1], lb, nodes[2], nodes[3], nb, at_b, two)
+            if plane >= 0:
+                u = _u_of(plane)
+                v = _v_of(plane)
+                left = one[3 + u] * two[3 + v] - one[3 + v] * two[3 + u] > 0.0
+                away = reach / half if left else -reach / half
+                cx = float(one[u]) - away * float(one[3 + v])
+                cy = float(one[v]) + away * float(one[3 + u])
+                _arc_row(one, two, plane, cx, cy, left, piece_rows[count])
+            elif na == 0 and nb == 0:
+                number = _pieces_of(reach / half, turn, tolerance)
+                _space_arc(one, two, turn, reach / half, number, piece_rows[count:])
+            else:
+                chord = 0.0
+                for c in range(3):
+                    chord += (two[c] - one[c]) * (two[c] - one[c])
+                blend(one, two, 0.5 * (at_a + at_b + sqrt(chord)), piece_rows[count:])
+                number = 3
+        for k in range(number):
+            piece_kind[count + k] = ARC if plane >= 0 else POLYNOMIAL
+            piece_plane[count + k] = plane if plane >= 0 else _SPACE
+            piece_length[count + k] = in_plane_length(int(piece_kind[count + k]), piece_rows[count + k])
+        count += number
+        found[i] = _CORNER
+        pieces[i] = number
+        before[i] = at_a
+        after[i] = at_b
+    return count
+
+
+@kernel
+def _greatest(
+    ka: int, pa: int, row_a: Floats, a: Floats, v: Floats, la: float, na: int, room_a: float,
+    kb: int, pb: int, row_b: Floats, b: Floats, lb: float, nb: int, room_b: float,
+    nodes: Floats, plane: int, radius: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
+) -> bool:  # fmt: skip
+    """The arc of the greatest radius up to `radius` that touches both segments a-v and v-b within their room.
+
+    Fills cuts[0..1], what it cuts off them, and its row; False if no arc down to a trifle was found.
+    """
+    good = False
+    low = 0.0
+    high = radius
+    trial = radius
+    for tries in range(_TRIES):
+        if _touch(
+            ka, pa, row_a, a, v, la, na, room_a, kb, pb, row_b, b, lb, nb, room_b, nodes, plane, trial, one, two,
+            cuts, out,
+        ):  # fmt: skip
+            good = True
+            cuts[0] = cuts[2]
+            cuts[1] = cuts[3]
+            low = trial
+            if trial == high:
+                break
+        else:
+            high = trial
+        if good and (high - low <= _SPLIT * high or tries > _ENOUGH):
+            break
+        trial = 0.5 * (low + high)
+        if trial < _SHORTEST:
+            break
+    return good
+
+
+@kernel
+def _touch(
+    ka: int, pa: int, row_a: Floats, a: Floats, v: Floats, la: float, na: int, room_a: float,
+    kb: int, pb: int, row_b: Floats, b: Floats, lb: float, nb: int, room_b: float,
+    nodes: Floats, plane: int, radius: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
+) -> bool:  # fmt: skip
+    """The arc of this radius: fills cuts[2..3] and its row, False if Newton does not find it within the room."""
+    x = _u_of(plane)
+    y = _v_of(plane)
+    leg_at(ka, pa, row_a, a, v, la, nodes[0], nodes[1], na, la, one)
+    leg_at(kb, pb, row_b, v, b, lb, nodes[2], nodes[3], nb, 0.0, two)
+    bend = one[3 + x] * two[3 + y] - one[3 + y] * two[3 + x]
+    side = 1.0 if bend > 0.0 else -1.0
+    turn = atan2(abs(bend), one[3 + x] * two[3 + x] + one[3 + y] * two[3 + y])
+    cut = min(radius * tan(0.5 * turn), room_a, room_b)
+    sa = la - cut
+    sb = cut
+    for _ in range(_STEPS):
+        leg_at(ka, pa, row_a, a, v, la, nodes[0], nodes[1], na, sa, one)
+        leg_at(kb, pb, row_b, v, b, lb, nodes[2], nodes[3], nb, sb, two)
+        ax = -side * float(one[3 + y])
+        ay = side * float(one[3 + x])
+        bx = -side * float(two[3 + y])
+        by = side * float(two[3 + x])
+        mx = one[x] + radius * ax - two[x] - radius * bx
+        my = one[y] + radius * ay - two[y] - radius * by
+        if max(abs(mx), abs(my)) <= _REACHED * (1.0 + radius + max(abs(one[x]), abs(one[y]))):
+            if not (la - room_a <= sa < la and 0.0 < sb <= room_b):
+                return False
+            cx = 0.5 * (one[x] + radius * ax + two[x] + radius * bx)
+            cy = 0.5 * (one[y] + radius * ay + two[y] + radius * by)
+            row = np.empty(12)
+            _arc_row(one, two, plane, cx, cy, side > 0.0, row)
+            if abs(row[4]) >= pi:
+                return False
+            out[:] = row
+            cuts[2] = la - sa
+            cuts[3] = sb
+            return True
+        f = 1.0 - radius * (one[6 + x] * ax + one[6 + y] * ay)
+        g = radius * (two[6 + x] * bx + two[6 + y] * by) - 1.0
+        jax = one[3 + x] * f
+        jay = one[3 + y] * f
+        jbx = two[3 + x] * g
+        jby = two[3 + y] * g
+        det = jax * jby - jay * jbx
+        if abs(det) < _FLAT:
+            return False
+        sa = min(max(sa - (mx * jby - my * jbx) / det, la - 2.0 * room_a), la)
+        sb = min(max(sb - (jax * my - jay * mx) / det, 0.0), lb)
+    return False

@@ -1,0 +1,256 @@
+"""The two segments next to a corner: point, direction and curvature at a length along them, and their parts.
+
+    s = 0 ●────────────────● s = length          state, Shape (9,):  0..2  point X, Y, Z [mm]
+          ──> t    |                                                 3..5  unit tangent t
+                   v  k                                              6..8  curvature vector k [1/mm]
+
+Lines, arcs, helices, ellipses and cubics by one function, so a corner asks both its neighbours the same way.
+"""
+
+from __future__ import annotations
+
+from math import asin, atan2, cos, sin, sqrt
+
+import numpy as np
+import numpy.typing as npt
+
+from nccompile.kernels import kernel
+from nccompile.kernels.curve_points import (
+    ARC,
+    ELLIPSE,
+    POLYNOMIAL,
+    Floats,
+    derivative3,
+    point3,
+    second3,
+    tangent3,
+)
+from nccompile.kernels.curves import NODES, parameter, tabulate
+
+__all__ = [
+    "STATE",
+    "common_plane",
+    "cut_legs",
+    "leg_at",
+    "parameter_at",
+    "reach_along",
+    "tabulate_leg",
+    "turn_between",
+]
+
+STATE = 9
+"""Numbers of a state."""
+
+_SPACE = 3
+_HALVINGS = 50
+
+
+@kernel
+def is_straight(kind: int) -> bool:
+    """Whether a segment of this kind is a straight line."""
+    return kind < ARC or kind > POLYNOMIAL
+
+
+@kernel
+def tabulate_leg(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats) -> int:
+    """Fills the arc-length table of a segment; returns its rows, 0 for a line, which needs none."""
+    if is_straight(kind):
+        return 0
+    return tabulate(kind, p, nodes_u, nodes_s)
+
+
+@kernel
+def parameter_at(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats, count: int, share: float) -> float:
+    """The curve parameter at a share 0..1 of the length."""
+    if count == 0 or kind == ARC or share <= 0.0 or share >= 1.0:
+        return min(max(share, 0.0), 1.0)
+    return parameter(kind, p, nodes_u, nodes_s, count, share * float(nodes_s[count - 1]))
+
+
+@kernel
+def _embed(plane: int, u: float, v: float, w: float, out: Floats, at: int) -> None:
+    """Writes plane coordinates and the third axis as X, Y, Z."""
+    if plane == 1:
+        out[at] = v
+        out[at + 1] = w
+        out[at + 2] = u
+    elif plane == 2:
+        out[at] = w
+        out[at + 1] = u
+        out[at + 2] = v
+    else:
+        out[at] = u
+        out[at + 1] = v
+        out[at + 2] = w
+
+
+@kernel
+def _curvature(kind: int, p: Floats, u: float) -> tuple[float, float, float]:
+    """The curvature vector d²P/ds² = (P'' - (P''.T) T) / |P'|² [1/mm] in plane coordinates; 0 at a cusp."""
+    dx, dy, dz = derivative3(kind, p, u)
+    ex, ey, ez = second3(kind, p, u)
+    square = dx * dx + dy * dy + dz * dz
+    if square == 0.0:
+        return 0.0, 0.0, 0.0
+    along = (ex * dx + ey * dy + ez * dz) / square
+    return (ex - along * dx) / square, (ey - along * dy) / square, (ez - along * dz) / square
+
+
+@kernel
+def leg_at(
+    kind: int, plane: int, p: Floats, a: Floats, b: Floats, length: float, nodes_u: Floats, nodes_s: Floats,
+    count: int, s: float, out: Floats,
+) -> None:  # fmt: skip
+    """Writes the state at s [mm] of a segment from a to b, with its table of `tabulate_leg`."""
+    share = s / length
+    if count == 0:
+        size = 0.0
+        for i in range(3):
+            step = float(b[i]) - float(a[i])
+            size += step * step
+        size = sqrt(size)
+        for i in range(3):
+            step = float(b[i]) - float(a[i])
+            out[i] = float(a[i]) + share * step
+            out[3 + i] = step / size
+            out[6 + i] = 0.0
+        return
+    u = parameter_at(kind, p, nodes_u, nodes_s, count, share)
+    inside = float(nodes_s[count - 1])
+    x = y = z = tx = ty = tz = kx = ky = kz = 0.0
+    if kind == ARC:
+        angle = float(p[3]) + float(p[4]) * u
+        kx = cos(angle)
+        ky = sin(angle)
+        side = 1.0 if p[4] > 0.0 else -1.0
+        x = float(p[0]) + float(p[2]) * kx
+        y = float(p[1]) + float(p[2]) * ky
+        tx = -side * ky
+        ty = side * kx
+        kx = -kx / float(p[2])
+        ky = -ky / float(p[2])
+    else:
+        x, y, z = point3(kind, p, u)
+        tx, ty, tz = tangent3(kind, p, u)
+        kx, ky, kz = _curvature(kind, p, u)
+    slant = 1.0
+    if plane != _SPACE:
+        third = 2 - plane  # XY leaves Z over, ZX leaves Y, YZ leaves X
+        rise = float(b[third]) - float(a[third])
+        z = float(a[third]) + share * rise
+        tz = rise / inside if inside > 0.0 else 0.0
+        slant = inside / length
+    size = sqrt(tx * tx + ty * ty + tz * tz)
+    if size > 0.0:
+        tx /= size
+        ty /= size
+        tz /= size
+    _embed(plane, x, y, z, out, 0)
+    _embed(plane, tx, ty, tz, out, 3)
+    bend = slant * slant
+    _embed(plane, bend * kx, bend * ky, bend * kz, out, 6)
+
+
+@kernel
+def turn_between(one: Floats, two: Floats) -> float:
+    """The angle [rad] 0..pi from the direction of one state to that of another."""
+    cx = one[4] * two[5] - one[5] * two[4]
+    cy = one[5] * two[3] - one[3] * two[5]
+    cz = one[3] * two[4] - one[4] * two[3]
+    dot = one[3] * two[3] + one[4] * two[4] + one[5] * two[5]
+    return atan2(sqrt(cx * cx + cy * cy + cz * cz), dot)
+
+
+@kernel
+def common_plane(kind0: int, plane0: int, kind1: int, plane1: int, a: Floats, v: Floats, b: Floats) -> int:
+    """The plane 0..2 (X-Y, Z-X, Y-Z) parallel to which both segments a-v and v-b stay, -1 if there is none."""
+    for plane in range(_SPACE):
+        third = 2 - plane
+        flat = a[third] == v[third] and v[third] == b[third]
+        fits0 = is_straight(kind0) or plane0 == plane
+        fits1 = is_straight(kind1) or plane1 == plane
+        if flat and fits0 and fits1:
+            return plane
+    return -1
+
+
+@kernel
+def reach_along(
+    kind: int, plane: int, p: Floats, a: Floats, b: Floats, length: float, nodes_u: Floats, nodes_s: Floats,
+    count: int, reach: float, room: float, at_end: bool, out: Floats,
+) -> float:  # fmt: skip
+    """The length [mm] to cut off a segment so that the cut is `reach` from its end (or start), at most `room`.
+
+    out: Shape (STATE,), scratch.  A line and a flat arc have it in closed form, the others by bisection.
+    """
+    if count == 0:
+        return min(reach, room)
+    if kind == ARC and a[2 - plane] == b[2 - plane]:
+        share = 0.5 * reach / float(p[2])
+        return min(2.0 * float(p[2]) * asin(share), room) if share < 1.0 else room
+    v = b if at_end else a
+    low = 0.0
+    high = room
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        s = length - middle if at_end else middle
+        leg_at(kind, plane, p, a, b, length, nodes_u, nodes_s, count, s, out)
+        square = 0.0
+        for i in range(3):
+            square += (out[i] - v[i]) * (out[i] - v[i])
+        if square < reach * reach:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@kernel
+def cut_legs(
+    kinds: npt.NDArray[np.uint8], planes: npt.NDArray[np.int64], rows: Floats, points: Floats, length: Floats,
+    picked: npt.NDArray[np.int64], s0: Floats, s1: Floats, out_rows: Floats, out_starts: Floats, out_ends: Floats,
+) -> None:  # fmt: skip
+    """The parts s0..s1 [mm] of segments: curve rows, Shape (m, 12), their starts and ends X, Y, Z, Shape (m, 3).
+
+    Args:     columns of the path as in `kernels.distance`;  picked: Shape (m,), which segments;  s0, s1: Shape (m,).
+    """
+    nodes_u = np.empty(NODES)
+    nodes_s = np.empty(NODES)
+    state = np.empty(STATE)
+    for j in range(len(picked)):
+        i = int(picked[j])
+        kind = int(kinds[i])
+        p = rows[i]
+        count = tabulate_leg(kind, p, nodes_u, nodes_s)
+        whole = float(length[i])
+        plane = int(planes[i])
+        leg_at(kind, plane, p, points[i], points[i + 1], whole, nodes_u, nodes_s, count, float(s0[j]), state)
+        for c in range(3):
+            out_starts[j, c] = state[c]
+        leg_at(kind, plane, p, points[i], points[i + 1], whole, nodes_u, nodes_s, count, float(s1[j]), state)
+        for c in range(3):
+            out_ends[j, c] = state[c]
+        if count:
+            u0 = parameter_at(kind, p, nodes_u, nodes_s, count, float(s0[j]) / whole)
+            u1 = parameter_at(kind, p, nodes_u, nodes_s, count, float(s1[j]) / whole)
+            _piece(kind, p, u0, u1, out_rows[j])
+
+
+@kernel
+def _piece(kind: int, p: Floats, u0: float, u1: float, out: Floats) -> None:
+    """Writes the curve row of the part u0..u1 of a curve."""
+    h = u1 - u0
+    for i in range(12):
+        out[i] = p[i]
+    if kind == ARC:
+        out[3] = p[3] + p[4] * u0
+        out[4] = p[4] * h
+    elif kind == ELLIPSE:
+        out[5] = p[5] + p[6] * u0
+        out[6] = p[6] * h
+    else:
+        for c in range(0, 12, 4):
+            out[c] = p[c] + u0 * (p[c + 1] + u0 * (p[c + 2] + u0 * p[c + 3]))
+            out[c + 1] = h * (p[c + 1] + u0 * (2.0 * p[c + 2] + u0 * 3.0 * p[c + 3]))
+            out[c + 2] = h * h * (p[c + 2] + 3.0 * p[c + 3] * u0)
+            out[c + 3] = h * h * h * p[c + 3]
