@@ -57,3 +57,23 @@ programs = st.tuples(
     st.lists(blocks(), max_size=12),
     st.sampled_from(["\n", "\r\n"]),
 ).map(lambda parts: parts[2].join([parts[0], *parts[1]]) + parts[2])
+
+
+@st.composite
+def programs_with_jumps(draw: st.DrawFn) -> str:
+    """A program whose jumps lead forward, to blocks with any different numbers, in any spelling."""
+    count = draw(st.integers(2, 9))
+    numbers = draw(st.lists(st.integers(1, 99), min_size=count, max_size=count, unique=True))
+    lines = ["% a", draw(st.sampled_from(["G36 O$n$ D1", "(x) g36 O$n$ D0", ""]))]
+    for at, number in enumerate(numbers):
+        mark = draw(st.sampled_from(["", "", "/", "(rough) "]))
+        name = draw(st.sampled_from(["N{}", "n0{}", "N{} "])).format(number)
+        blank = draw(_blanks)
+        if at + 1 < count and draw(st.booleans()):
+            target = draw(st.sampled_from(numbers[at + 1 :]))
+            condition = draw(st.sampled_from(["K1", "K0", "k$n$", "K1.5"])) if lines[1] else "K1"
+            text = draw(st.sampled_from([f"G20 L{target} {condition}", f"g20{condition}l0{target}."]))
+        else:
+            text = f"G1{blank}X{at}"
+        lines.append(f"{mark}{name}{blank}{text}")
+    return draw(st.sampled_from(["\n", "\r\n"])).join(lines)

@@ -21,7 +21,16 @@ from nccompile.parser import parse
 from nccompile.source import Source
 from nccompile.toolchain import Compilation
 from nccompile.toolpath import Toolpath
-from tests.lint.programs import EVERY_RULE, OPTIONS, SAMPLES, checked, codes, programs, read
+from tests.lint.programs import (
+    EVERY_RULE,
+    OPTIONS,
+    SAMPLES,
+    checked,
+    codes,
+    programs,
+    programs_with_jumps,
+    read,
+)
 
 
 def path_of(text: str) -> list[Toolpath]:
@@ -125,6 +134,10 @@ def test_paths_differ_if_one_bit_does() -> None:
         ("% a  \n\n / n10  x$w$y1 \n\n\n", "% a\n\n/N10 X$w$ Y1\n"),
         ("% a\r\nN10 G1 X1,5\r\n  (note)\r\n", "% a\r\nN10 G1 X1,5\r\n(note)\r\n"),
         ("% a\nn10 g1 x1\n% b\nn20 g1 x2\n", "% a\nN10 G1 X1\n% b\nn20 g1 x2\n"),
+        ("% a\nn10 g1 x1\n\x1a", "% a\nN10 G1 X1\n\x1a"),
+        ("% a\r\nn10 g1 x1\x1a\r\n\x1a", "% a\r\nN10 G1 X1\r\n\x1a"),
+        ("% a\nn10 g1 x1\x00", "% a\nn10 g1 x1\x00"),
+        ("% a\n\tn10\tg1 (\tx )  x1 \n", "% a\nN10 G1 (\tx ) X1\n"),
         ("", ""),
         ("\n\n", ""),
         ("% a\rN10 G1 X1\r", "% a\rN10 G1 X1\r"),
@@ -162,6 +175,22 @@ def test_any_step(step: int) -> None:
     new = renumbered(Source("a.nc", LOOP), step).text
     assert renumbered(Source("a.nc", new), step).text == new
     assert same_path(path_of(LOOP), path_of(new))
+
+
+@settings(max_examples=80, deadline=None)
+@given(programs_with_jumps(), st.integers(1, 20))
+def test_renumbering_keeps_the_path_of_any_jumps(text: str, step: int) -> None:
+    new = renumbered(Source("a.nc", text), step).text
+    assert same_path(path_of(text), path_of(new))
+    assert errors_of(new) == errors_of(text)
+    numbers = [
+        block.number for block in parse(Source("a.nc", new), Diagnostics()) if block.words or block.number
+    ]
+    assert [n.text for n in numbers if n] == [f"N{step * at}" for at in range(1, len(numbers) + 1)]
+    assert renumbered(Source("a.nc", new), step).text == new
+    laid_out = format_text(Source("a.nc", new))
+    assert same_path(path_of(text), path_of(laid_out))
+    assert format_text(Source("a.nc", laid_out)) == laid_out
 
 
 def test_comments_before_the_first_word_stay_before_it() -> None:

@@ -132,6 +132,7 @@ def test_lint_command_fixes_files_and_streams(command: Command, tmp_path: Path) 
         (("lint",), "Missing argument"),
         (("fmt", "missing.nc"), "missing.nc cannot be read"),
         (("fmt", "/dev/zero"), "/dev/zero is no file that could be changed"),
+        (("fmt", "binary.nc"), "binary.nc is not a text file"),
         (("fmt", "pipe.nc"), "pipe.nc is no file that could be changed"),
     ],
 )
@@ -142,6 +143,7 @@ def test_wrong_use_is_refused(
     message: str,
 ) -> None:
     (tmp_path / "queue.nc").write_bytes(b"PK\x03\x04")
+    (tmp_path / "binary.nc").write_bytes(b"% a\nn10 g1 x1\n\x01")
     os.mkfifo(tmp_path / "pipe.nc")
     code, out, err = command(*arguments)
     assert (code, out) == (2, "")

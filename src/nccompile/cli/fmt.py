@@ -28,8 +28,9 @@ def format_programs(
     """Lay part programs out: upper case, one blank between words; the toolpath stays the same."""
     from nccompile.cli.programs import name_of, programs_in, read_bytes, require_file, store
     from nccompile.cli.queues import STDIN
+    from nccompile.errors import UsageError
     from nccompile.lint.config import Config, config_for
-    from nccompile.lint.fmt import format_text, renumbered
+    from nccompile.lint.fmt import format_text, is_text, renumbered
     from nccompile.lint.rewrite import encoding_of
     from nccompile.source import Source
 
@@ -39,6 +40,8 @@ def format_programs(
             require_file(path)
         data = read_bytes(path)
         source = Source.from_bytes(name_of(path), data)
+        if not is_text(source):
+            raise UsageError(f"{source.name} is not a text file; it stays as it is")
         config = Config() if path == STDIN else config_for(path)
         if renumber:
             source = renumbered(source, config.step if step is None else step)

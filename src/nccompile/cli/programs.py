@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -46,8 +47,12 @@ def read_bytes(path: Path) -> bytes:
 
 def require_file(path: Path) -> None:
     """Raises UsageError if a program cannot be written back: a pipe, say."""
-    if path != STDIN and path.exists() and not path.is_file():
+    if path == STDIN or not path.exists():
+        return
+    if not path.is_file():
         raise UsageError(f"{path} is no file that could be changed; - reads standard input")
+    if not os.access(path, os.W_OK):
+        raise UsageError(f"{path} must not be written")
 
 
 def store(path: Path, data: bytes, new: bytes) -> None:

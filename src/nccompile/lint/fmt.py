@@ -8,6 +8,8 @@ The toolpath stays the same.  Lines that cannot be read, and those behind a seco
 
 from __future__ import annotations
 
+import re
+
 from nccompile.diagnostics import Diagnostics
 from nccompile.lint.layout import laid_out
 from nccompile.lint.numbering import numbering
@@ -15,11 +17,21 @@ from nccompile.lint.rewrite import apply_edits, split_lines
 from nccompile.parser import parse, read_header
 from nccompile.source import Source
 
-__all__ = ["format_text", "renumbered"]
+__all__ = ["format_text", "is_text", "renumbered"]
+
+_END_MARK = re.compile(r"[\x00\x1a \r\n]*\x1a\Z")
 
 
 def format_text(source: Source) -> str:
-    """The program laid out; empty lines at the end go, the last line gets an end, line ends become alike."""
+    """The program laid out; empty lines at the end go, the last line gets an end, line ends become alike.
+
+    What is not text stays as it is, and so does an end-of-file mark (Ctrl-Z).
+    """
+    if not is_text(source):
+        return source.text
+    mark = _END_MARK.search(source.text)
+    if mark is not None:
+        source = Source(source.name, source.text[: mark.start()], source.sha256)
     lines = split_lines(source.text)
     ends = [end for _, end in lines]
     end = max(("\n", "\r\n", "\r"), key=ends.count)
@@ -33,7 +45,14 @@ def format_text(source: Source) -> str:
     texts = ["" if not text.strip(" \t\v\f") else text for text in texts]
     while texts and texts[-1] == "":
         texts.pop()
-    return "".join(text + end for text in texts)
+    return "".join(text + end for text in texts) + ("" if mark is None else "\x1a")
+
+
+def is_text(source: Source) -> bool:
+    """Whether a file can be a program at all; others must not be changed."""
+    diagnostics = Diagnostics()
+    next(parse(source, diagnostics), None)
+    return not diagnostics.counts["NC010"]
 
 
 def renumbered(source: Source, step: int) -> Source:
