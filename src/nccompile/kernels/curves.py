@@ -33,8 +33,8 @@ from nccompile.kernels.curve_points import (
 
 __all__ = [
     "ARC", "ELLIPSE", "NODES", "POLYNOMIAL", "Floats", "curvature", "derivative", "derivative3",
-    "in_plane_length", "in_plane_lengths", "max_curvature", "parameter", "point", "point3", "second",
-    "second3", "speed", "tabulate", "tangent", "tangent3",
+    "in_plane_length", "in_plane_lengths", "is_cusp", "max_curvature", "parameter", "point", "point3",
+    "second", "second3", "speed", "speed_extremes", "tabulate", "tangent", "tangent3",
 ]  # fmt: skip
 
 NODES = 129
@@ -42,7 +42,9 @@ NODES = 129
 
 _QUARTER = 1.5707963267948966
 
-_STANDSTILL = 1e-9  # relative: a speed minimum below it is a cusp, found by bisection to 1e-16
+_CUSP = 1e-8  # relative: a slower speed minimum is a cusp; taken as 0 it moves a curve by 2e-9 of its size
+_ROUNDING = 1e-15  # relative to the terms of a derivative: a product of vectors below it is none
+_PARALLEL = 1e-9  # sine of an angle: directions at a cusp that differ by less are one line
 _SAME_LENGTH = 2e-14  # relative: 10 and 20 points agree; the kept 20-point value is better by many digits
 _FOUND = 5e-14  # relative to the whole length: the inverse stops here
 _NEWTON = 1e-8  # relative to the distance to both nodes: the next Newton step ends below rounding
@@ -59,17 +61,29 @@ _WEIGHTS = (
 
 @kernel
 def curvature(kind: int, p: Floats, u: float) -> float:
-    """|dT/ds| at u [1/mm], |P' x P''| / |P'|³; inf where the speed is 0 (a cusp), 0 for a straight piece."""
+    """|dT/ds| at u [1/mm], |P' x P''| / |P'|³; 0 for a straight piece.
+
+    Where the speed is 0 (a cusp): 0 if the curve comes and goes on one line, else inf.  What the rounding of a
+    cubic's terms can make of P' x P'' counts as 0.
+    """
     if kind == ARC:
         r = float(p[2])
         return 1.0 / r if r > 0.0 else inf
     x, y, z = derivative3(kind, p, u)
     x2, y2, z2 = second3(kind, p, u)
     size = sqrt(x * x + y * y + z * z)
-    cx = y * z2 - z * y2
-    cy = z * x2 - x * z2
-    cz = x * y2 - y * x2
-    bend = sqrt(cx * cx + cy * cy + cz * cz)
+    bend = _cross(x, y, z, x2, y2, z2)
+    if kind == POLYNOMIAL:
+        terms = 0.0
+        for i in range(0, 12, 4):
+            terms += abs(p[i + 1]) + 2.0 * abs(p[i + 2]) + 3.0 * abs(p[i + 3])
+        most = sqrt(x2 * x2 + y2 * y2 + z2 * z2)
+        if bend <= _ROUNDING * terms * most:
+            x3, y3, z3 = float(p[3]), float(p[7]), float(p[11])
+            turn = _cross(x2, y2, z2, x3, y3, z3)
+            if size > _ROUNDING * terms or turn <= _PARALLEL * terms * most:
+                return 0.0
+            return inf
     cube = size * size * size
     if cube == 0.0:
         return inf
@@ -77,8 +91,25 @@ def curvature(kind: int, p: Floats, u: float) -> float:
 
 
 @kernel
+def _cross(x: float, y: float, z: float, x2: float, y2: float, z2: float) -> float:
+    """The size of the product of two vectors."""
+    cx = y * z2 - z * y2
+    cy = z * x2 - x * z2
+    cz = x * y2 - y * x2
+    return sqrt(cx * cx + cy * cy + cz * cz)
+
+
+@kernel
+def is_cusp(kind: int, p: Floats, u: float) -> bool:
+    """Whether a curve turns back at u, one of its speed extremes: the speed of a cubic is 0 but for rounding."""
+    if kind != POLYNOMIAL or not 1e-9 < u < 1.0 - 1e-9:
+        return False
+    return speed(kind, p, u) <= _CUSP * (speed(kind, p, 0.0) + speed(kind, p, 0.5) + speed(kind, p, 1.0))
+
+
+@kernel
 def max_curvature(kind: int, p: Floats) -> float:
-    """The greatest curvature on the curve [1/mm]; inf at a cusp.
+    """The greatest curvature on the curve [1/mm]; inf at a cusp inside it.
 
     Ellipse: it is greatest where the speed is least, on a main axis or at an end.  Polynomial: the greatest
     of 65 places and of the speed minima, sharpened by golden section between the neighbours of the best.
@@ -86,12 +117,11 @@ def max_curvature(kind: int, p: Floats) -> float:
     if kind == ARC:
         return curvature(kind, p, 0.0)
     cuts = np.empty(8)
-    count = _cuts(kind, p, cuts)
+    count = speed_extremes(kind, p, cuts)
     best = max(curvature(kind, p, 0.0), curvature(kind, p, 1.0))
-    pace = _STANDSTILL * (speed(kind, p, 0.0) + speed(kind, p, 0.5) + speed(kind, p, 1.0))
     for i in range(count):
-        if kind == POLYNOMIAL and speed(kind, p, float(cuts[i])) <= pace:
-            return inf  # turns back on itself, also where it is a straight line
+        if is_cusp(kind, p, float(cuts[i])):
+            return inf
         best = max(best, curvature(kind, p, float(cuts[i])))
     if kind == ELLIPSE:
         return best
@@ -135,7 +165,7 @@ def _root(q0: float, q1: float, q2: float, q3: float, low: float, high: float) -
 
 
 @kernel
-def _cuts(kind: int, p: Floats, cuts: Floats) -> int:
+def speed_extremes(kind: int, p: Floats, cuts: Floats) -> int:
     """Fills the places 0 < u < 1, ascending, where the speed has a minimum or maximum; returns their number.
 
     Ellipse: at multiples of 90° of the eccentric angle (at most 5).  Polynomial: d|P'|²/dt = 2 P'.P'' is a
@@ -239,7 +269,7 @@ def tabulate(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats) -> int:
         nodes_s[1] = float(p[2]) * abs(float(p[4]))
         return 2
     cuts = np.empty(8)
-    number = _cuts(kind, p, cuts)
+    number = speed_extremes(kind, p, cuts)
     top = NODES  # the stack grows downwards; an entry is the end of an interval and its 10-point length
     high = 1.0
     rough = 0.0

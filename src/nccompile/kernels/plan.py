@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
-from nccompile.kernels.curves import derivative, derivative3, max_curvature
+from nccompile.kernels.curves import max_curvature, tangent3
 from nccompile.kernels.timelaw import law_times
 
 __all__ = ["durations", "jerk_limits", "look_ahead", "row_limits"]
@@ -46,8 +46,7 @@ def row_limits(
 
     On a curve of curvature c, the tangential share at and the normal share an of an axis's limit a hold
     at² + an² <= a²:  v_limit = sqrt(an / c); where the program accelerates less than 0.6 a, an takes the rest.
-    Even a cusp turns an axis velocity by no more than 2 v, so `creep` (k,) [mm/s], half of what may jump in a
-    cycle besides the tangential share, is allowed at any curvature.
+    creep (k,) [mm/s] is allowed at any curvature.
     """
     axes = target.shape[1]
     for i in range(len(kind)):
@@ -102,27 +101,21 @@ def row_limits(
                 linear = float(t_end[i, other])
                 share = sqrt(max(1.0 - linear * linear, 0.0))
             p = parameters[row]
-            if third < 0:
-                for end in range(2):
-                    du, dv = derivative(int(kind[i]), p, float(end))
-                    size = sqrt(du * du + dv * dv)
-                    if size > 0.0:
-                        slopes = t_end if end else t_start
-                        slopes[i, first] = share * du / size
-                        slopes[i, second] = share * dv / size
-                a_plane = min(float(a_axis[first]), float(a_axis[second]))
-                v_plane = min(float(v_axis[first]), float(v_axis[second]))
-            else:
-                for end in range(2):
-                    dx, dy, dz = derivative3(int(kind[i]), p, float(end))
-                    size = sqrt(dx * dx + dy * dy + dz * dz)
-                    if size > 0.0:
-                        slopes = t_end if end else t_start
-                        slopes[i, 0] = dx / size
-                        slopes[i, 1] = dy / size
-                        slopes[i, 2] = dz / size
-                a_plane = min(float(a_axis[0]), float(a_axis[1]), float(a_axis[2]))
-                v_plane = min(float(v_axis[0]), float(v_axis[1]), float(v_axis[2]))
+            for end in range(2):
+                dx, dy, dz = tangent3(int(kind[i]), p, float(end))
+                slopes = t_end if end else t_start
+                if third < 0:
+                    slopes[i, first] = share * dx
+                    slopes[i, second] = share * dy
+                else:
+                    slopes[i, 0] = dx
+                    slopes[i, 1] = dy
+                    slopes[i, 2] = dz
+            a_plane = min(float(a_axis[first]), float(a_axis[second]))
+            v_plane = min(float(v_axis[first]), float(v_axis[second]))
+            if third >= 0:
+                a_plane = min(a_plane, float(a_axis[2]))
+                v_plane = min(v_plane, float(v_axis[2]))
             if share > 0.0 and straight[i] == 0:
                 v_top = min(v_top, v_plane / share)
                 a_top = min(a_top, _TANGENTIAL * a_plane / (share * peak))

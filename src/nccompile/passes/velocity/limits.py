@@ -10,15 +10,26 @@ from nccompile.kernels import plan as kernels
 from nccompile.kernels.corners import junctions
 from nccompile.kernels.timelaw import peak_factor
 from nccompile.passes.velocity.settings import JERK, TIME_OPTIMAL, PlanSettings
-from nccompile.toolpath.columns import Toolpath
+from nccompile.toolpath.columns import Floats, Toolpath
 
-__all__ = ["limited"]
+__all__ = ["creep", "limited"]
 
 _UNLIMITED = 1e6
 """v_limit of segments that nothing but their feed limits [mm/s]: the greatest velocity a machine may have."""
 
 _UNBOUND = 1e9
 """Path acceleration that only the axes limit [mm/s²]: the greatest one a machine may have."""
+
+
+def creep(settings: PlanSettings) -> Floats:
+    """Shape (k,): the path velocity at which any bend may be run [mm/s].
+
+    Even a turn back changes an axis velocity by no more than 2 v, so half of its velocity step is allowed at any
+    curvature.  An axis without a step has what 0.4 of its acceleration makes in a cycle.
+    """
+    axis = settings.planned_limits
+    stepped = (axis.velocity_step > 0.0) & np.isfinite(axis.velocity_step)
+    return np.where(stepped, 0.5 * axis.velocity_step, 0.2 * axis.acceleration * settings.cycle)
 
 
 def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
@@ -41,7 +52,7 @@ def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
     kernels.row_limits(
         chunk.kind, chunk.starts(), chunk.target, chunk.curve, chunk.curves.plane, chunk.curves.parameters,
         chunk.length, chunk.profile, axis.velocity, axis.acceleration, axis.rapid,
-        0.2 * axis.acceleration * settings.cycle + 0.5 * axis.velocity_step, peak_factor(settings.law), straight,
+        creep(settings), peak_factor(settings.law), straight,
         feed, accel, decel, v_limit, t_start, t_end,
     )  # fmt: skip
     if settings.planner == JERK and axis.jerk is not None:

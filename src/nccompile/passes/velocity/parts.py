@@ -12,9 +12,9 @@ from nccompile.kernels.interpolator import CONTINUES
 from nccompile.toolpath.columns import CURVE_PARAMETERS, Curves, EventKind, Events, Floats, Ints, Toolpath
 from nccompile.toolpath.lengths import path_lengths
 
-__all__ = ["Parts", "parted"]
+__all__ = ["Parts", "assembled", "parted"]
 
-_TAKEN = ("kind", "feed", "accel", "decel", "mark", "radius", "profile", "line", "v_limit")
+_TAKEN = ("kind", "feed", "accel", "decel", "radius", "line")
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,6 @@ def parted(path: Toolpath, parts: Parts) -> Toolpath:
     m = len(parts.row)
     if m == len(path):
         return path
-    assert path.v_limit is not None
-    assert path.v_junction is not None
     row = parts.row
     target = np.empty((m, len(path.axes)))
     parameters, length = np.zeros((m, CURVE_PARAMETERS)), np.empty(m)
@@ -43,19 +41,31 @@ def parted(path: Toolpath, parts: Parts) -> Toolpath:
         path.kind, path.starts(), path.target, path.curve, path.curves.plane, path.curves.parameters, path.length,
         np.empty(NODES), np.empty(NODES), row, parts.p0, parts.p1, target, parameters, length,
     )  # fmt: skip
+    return assembled(path, parts, target, parameters, length)
+
+
+def assembled(path: Toolpath, parts: Parts, target: Floats, parameters: Floats, length: Floats) -> Toolpath:
+    """The parts as rows: target (m, k), parameters (m, 12) of their curves, length (m,), all else from their rows.
+
+    A path without limits gives one without limits.
+    """
+    m, row = len(parts.row), parts.row
     curved = np.flatnonzero(path.curve[row] >= 0)
     curve = np.full(m, -1, np.int32)
     curve[curved] = np.arange(len(curved), dtype=np.int32)
     inner = np.append(row[1:] == row[:-1], False)
+    if path.v_limit is not None and path.v_junction is not None:
+        path = path.replace(
+            v_limit=path.v_limit[row], v_junction=np.where(inner, path.v_limit[row], path.v_junction[row]),
+            v_end=np.zeros(m),
+        )  # fmt: skip
     out = path.replace(
-        **{name: getattr(path, name)[row] for name in _TAKEN if name not in ("mark", "profile")},
+        **{name: getattr(path, name)[row] for name in _TAKEN},
         target=target, curve=curve, length=length,
         curves=Curves(path.curves.plane[path.curve[row[curved]]], parameters[curved]),
         events=_events(path, parts),
-        v_junction=np.where(inner, path.v_limit[row], path.v_junction[row]),
         profile=path.profile[row] | (inner.astype(np.uint16) << np.uint16(CONTINUES)),
         mark=np.where(inner, 0, path.mark[row]).astype(np.uint16),
-        v_end=np.zeros(m),
     )  # fmt: skip
     # A row that is not cut keeps its length to the bit, whatever else is in the chunk.
     uncut = (parts.p0 == 0.0) & (parts.p1 == 1.0)

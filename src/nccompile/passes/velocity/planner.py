@@ -29,6 +29,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from nccompile.kernels import plan as kernels
+from nccompile.passes.velocity.cuts import cut_at_bends
 from nccompile.passes.velocity.limits import limited
 from nccompile.passes.velocity.optimal import fastest
 from nccompile.passes.velocity.settings import JERK, TIME_OPTIMAL, PlanSettings
@@ -57,10 +58,13 @@ class Planner:
     _pending: Toolpath | None = field(default=None, init=False)
     _idle: Toolpath | None = field(default=None, init=False)
     _v_before: float = field(default=0.0, init=False)
+    _out: int = field(default=0, init=False)  # rows put out
 
     def feed(self, chunk: Toolpath) -> Iterator[Toolpath]:
         """Takes the next chunk; yields what it settles."""
         if len(chunk):
+            if chunk.v_limit is None:
+                chunk = cut_at_bends(chunk, self.settings)
             self._pending = chunk if self._pending is None else Toolpath.join([self._pending, chunk])
             self._idle = None
             yield from self._settle(complete=False)
@@ -83,7 +87,8 @@ class Planner:
         assert done.v_end is not None
         self._v_before = float(done.v_end[-1])
         self._pending = self._pending.rows(settled, len(planned)) if settled < len(planned) else None
-        yield done
+        yield done.replace(first=self._out)
+        self._out += len(done)
 
 
 def plan_window(

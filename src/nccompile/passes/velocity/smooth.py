@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from nccompile.kernels.erosion import PARTS, erode
+from nccompile.passes.velocity.cuts import cut_at_bends
 from nccompile.passes.velocity.limits import limited
 from nccompile.passes.velocity.parts import Parts, parted
 from nccompile.passes.velocity.settings import PlanSettings
@@ -44,6 +45,7 @@ class _Stage:
     def feed(self, chunk: Toolpath) -> Iterator[Toolpath]:
         """Takes the next chunk; yields the rows that are complete."""
         if len(chunk):
+            chunk = cut_at_bends(chunk, self.settings)
             self._held = chunk if self._held is None else Toolpath.join([self._held, chunk])
             yield from self._emit(complete=False)
 
