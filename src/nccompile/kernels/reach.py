@@ -24,7 +24,7 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 from nccompile.kernels.curves import derivative3, second3, tangent3
 
-__all__ = ["backward", "forward", "ramps", "slopes"]
+__all__ = ["backward", "bend_at", "forward", "ramps", "slopes"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -37,7 +37,7 @@ _FLOOR = 1e-3  # share of U that a row always has to accelerate or brake with, s
 
 
 @kernel
-def _slopes(kind: int, plane: int, p: Floats, u: float, share: float, d1: Floats, d2: Floats) -> None:
+def bend_at(kind: int, plane: int, p: Floats, u: float, share: float, d1: Floats, d2: Floats) -> None:
     """Writes q' and q'' of X, Y, Z (3,) at the parameter u; the axis across the plane is left at 0.
 
     share: in-plane length over path length.  At a cusp q' is the limit and q'' is left at 0: the path is at rest
@@ -102,9 +102,9 @@ def slopes(
             rise = (target[j, third] - start[j, third]) / length[j]
             flat = sqrt(max(1.0 - rise * rise, 0.0))
         p = parameters[c]
-        _slopes(int(kind[j]), across, p, 0.0, flat, d1[j, 0], d2[j, 0])
-        _slopes(int(kind[j]), across, p, 1.0, flat, d1[j, 1], d2[j, 1])
-        _slopes(int(kind[j]), across, p, 0.5, flat, mid1, mid2)
+        bend_at(int(kind[j]), across, p, 0.0, flat, d1[j, 0], d2[j, 0])
+        bend_at(int(kind[j]), across, p, 1.0, flat, d1[j, 1], d2[j, 1])
+        bend_at(int(kind[j]), across, p, 0.5, flat, mid1, mid2)
         along = sum1 = across2 = sum2 = 0.0
         for a in range(3):
             e1 = abs(mid1[a] - 0.5 * (d1[j, 0, a] + d1[j, 1, a]))

@@ -1,8 +1,8 @@
 """The machine model: what machine.toml says, validated.
 
     [machine]     name, cycle_us
-    [path]        feed, acceleration, deceleration, quick_deceleration, angle_tolerance, time_law,
-                  max_switches
+    [path]        feed, acceleration, deceleration, quick_deceleration, angle_tolerance, corner_angle,
+                  centripetal_acceleration, centripetal_jump, time_law, max_switches
     [axes.X]      kind, min, max, velocity, acceleration, jerk, velocity_step, rapid, following_error, lag, home
     [kinematics]  type, offset
     [runtime]     queue, low_water
@@ -79,6 +79,16 @@ class PathDefaults(_Section):
     """Deceleration of a quick stop [mm/s²]; the path's own counts if it is greater (SoftMotion §6.2.8)."""
     angle_tolerance: float = Field(default=20.0, ge=0, le=180, json_schema_extra=_unit("deg"))
     """Bend of the path up to which the path does not stop [deg] (SoftMotion §6.2.7)."""
+    corner_angle: float = Field(default=180.0, ge=0, le=180, json_schema_extra=_unit("deg"))
+    """Bend in all axes together above which the path stops [deg] (OPENcontrol's MDA); 180: no such limit."""
+    centripetal_acceleration: float | None = Field(
+        default=None, gt=0, le=_ACCELERATION_MAX, json_schema_extra=_unit("mm/s²")
+    )
+    """Greatest centripetal acceleration v² / r [mm/s²] (SoftMotion §6.2.7, dMaxAcc); no limit without the key."""
+    centripetal_jump: float | None = Field(
+        default=None, gt=0, le=_ACCELERATION_MAX, json_schema_extra=_unit("mm/s²")
+    )
+    """Greatest jump of it where the curvature jumps [mm/s²] (§6.2.7, dMaxAccJump); no limit without the key."""
     time_law: Literal["trapezoid", "sigmoid"] = "trapezoid"
     """Velocity profile (SoftMotion §6.2.8)."""
     max_switches: int = Field(default=8, ge=1, le=1000, json_schema_extra=_unit("switch points"))

@@ -89,7 +89,7 @@ def _bounds(chunk: Toolpath, settings: PlanSettings) -> tuple[Floats, Floats, Fl
     slowest = creep(settings)
     for value, columns in _AXES.items():
         rows, axes = curved[plane == value], list(columns)
-        across[rows] = _ACROSS * limits.acceleration[axes].min()
+        across[rows] = min(_ACROSS * float(limits.acceleration[axes].min()), settings.centripetal)
         top[rows] = np.minimum(feed[rows], limits.velocity[axes].min())
         slow[rows] = slowest[axes].min()
     return across, top, np.minimum(slow, top)

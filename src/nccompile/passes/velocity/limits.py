@@ -9,7 +9,8 @@ import numpy as np
 from nccompile.kernels import plan as kernels
 from nccompile.kernels.corners import junctions
 from nccompile.kernels.timelaw import peak_factor
-from nccompile.passes.velocity.settings import JERK, TIME_OPTIMAL, PlanSettings
+from nccompile.kernels.turns import turn_limits
+from nccompile.passes.velocity.settings import JERK, SOFTMOTION, TIME_OPTIMAL, PlanSettings
 from nccompile.toolpath.columns import Floats, Toolpath
 
 __all__ = ["creep", "limited"]
@@ -67,6 +68,12 @@ def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
         axis.velocity_step, chord, settings.cycle, settings.rule, settings.junction_deviation or 0.0,
         int(settings.rapid_stops), v_junction,
     )  # fmt: skip
+    if settings.planner != SOFTMOTION and settings.limits_turns:
+        turn_limits(
+            chunk.kind, chunk.starts(), chunk.target, chunk.curve, chunk.curves.plane, chunk.curves.parameters,
+            chunk.length, t_start, t_end, 2.0 * sin(0.5 * settings.corner_angle), settings.centripetal,
+            settings.centripetal_jump, v_limit, v_junction,
+        )  # fmt: skip
     planned = chunk.replace(
         feed=feed, accel=accel, decel=decel, v_limit=v_limit, v_junction=v_junction, v_end=np.zeros(n)
     )

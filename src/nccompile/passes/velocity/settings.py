@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, inf, radians
+from math import ceil, inf, pi, radians
 
 import numpy as np
 
@@ -39,7 +39,9 @@ class PlanSettings:
     cycle [s]: the time in which an axis velocity may jump by its step once; law: `LAWS`; planner: `PLANNERS`;
     window: rows looked ahead, None for all; junction_deviation [mm]: how far a corner may be cut by a drive
     that does not jump, None for no such rule; junction_rule: PARABOLA, or CIRCLE as grbl and Klipper do;
-    rapid_stops: positionings stop at both ends (SoftMotion §3.2).
+    rapid_stops: positionings stop at both ends (SoftMotion §3.2); corner_angle [rad]: bend in all axes above which
+    the path stops (OPENcontrol's MDA); centripetal, centripetal_jump [mm/s²]: greatest v² times curvature, and its
+    greatest jump.
     """
 
     limits: AxisLimits
@@ -54,6 +56,9 @@ class PlanSettings:
     junction_deviation: float | None = None
     junction_rule: int = PARABOLA
     rapid_stops: bool = True
+    corner_angle: float = pi
+    centripetal: float = inf
+    centripetal_jump: float = inf
 
     @property
     def rule(self) -> int:
@@ -73,6 +78,11 @@ class PlanSettings:
         bound = np.isfinite(jerk) & np.isfinite(self.limits.acceleration)
         times = 2.0 * self.limits.acceleration[bound] / jerk[bound]
         return ceil(float(times.max(initial=0.0)) / self.cycle - 1e-9) * self.cycle
+
+    @property
+    def limits_turns(self) -> bool:
+        """Whether the machine has limits of turns beside those of its axes."""
+        return self.corner_angle < pi or self.centripetal < inf or self.centripetal_jump < inf
 
     @property
     def planned_limits(self) -> AxisLimits:
@@ -108,4 +118,7 @@ class PlanSettings:
             planner=planner or LOOK_AHEAD,
             window=window,
             junction_deviation=junction_deviation,
+            corner_angle=radians(path.corner_angle),
+            centripetal=inf if path.centripetal_acceleration is None else path.centripetal_acceleration,
+            centripetal_jump=inf if path.centripetal_jump is None else path.centripetal_jump,
         )
