@@ -46,7 +46,8 @@ Command = Callable[[Path, Path], list[str]]
 
 def set_up(language: str, at: int) -> str:
     """The set-up lines of the page: the `at`-th block in a language."""
-    return re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(), re.DOTALL)[at]
+    blocks: list[str] = re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    return blocks[at]
 
 
 def neovim(at: int) -> Command:
@@ -106,7 +107,9 @@ def tried(name: str) -> bool:
 def main(names: list[str]) -> int:
     """0 if all editors saw what they should, or none is there."""
     wanted = names or [
-        name for name, (variable, program, _) in EDITORS.items() if variable in os.environ or shutil.which(program)
+        name
+        for name, (variable, program, _) in EDITORS.items()
+        if variable in os.environ or shutil.which(program)
     ]
     return 0 if all([tried(name) for name in wanted]) else 1
 

@@ -11,9 +11,11 @@ import pytest
 from nccompile.diagnostics import render
 from nccompile.lint.config import Config
 from nccompile.lint.engine import lint
+from nccompile.lint.fmt import format_text
 from nccompile.source import Source
 from tests.lint.programs import OPTIONS
 from tests.lsp.client import Client, Failed, serving, span, uri_of
+from tests.lsp.writer import taken
 
 PART = """\
 % part (x)
@@ -156,7 +158,7 @@ def labels_of(found: Any) -> list[str]:
 def test_formatting(client: Client) -> None:
     options = {"tabSize": 1, "insertSpaces": True}
     (edit,) = client.of("textDocument/formatting", URI, options=options)
-    assert edit["newText"] == PART.replace("g1", "G1")
+    assert (edit["range"], edit["newText"]) == (span(3, 0, 0, 4), "N15 G1 X12 F20\n")
     (edit,) = client.of("textDocument/rangeFormatting", URI, range=span(2, 0, 0, 4), options=options)
     assert (edit["range"], edit["newText"]) == (span(3, 0, 14), "N15 G1 X12 F20")
     assert client.of("textDocument/rangeFormatting", URI, range=span(5, 0, 9), options=options) == []
@@ -175,9 +177,10 @@ def test_code_actions(client: Client) -> None:
     (edit,) = found["Silence NC054 here"]["edit"]["changes"][URI]
     assert (edit["range"], edit["newText"]) == (span(3, 14, 14), " (nc: ignore[NC054])")
     fixed = client.request("codeAction/resolve", found["Apply all safe fixes"])["edit"]["changes"][URI]
-    assert fixed[0]["newText"] == PART.replace("g1", "G1")
+    assert [(edit["range"], edit["newText"]) for edit in fixed] == [(span(3, 0, 0, 4), "N15 G1 X12 F20\n")]
     numbered = client.request("codeAction/resolve", found["Number the blocks anew"])["edit"]["changes"][URI]
-    assert "N80 G20 L50 K$n$\n" in numbered[0]["newText"]
+    assert "\nN80 G20 L50 K$n$\n" in taken(PART, numbered)
+    assert numbered[0]["range"]["start"]["line"] == 3  # what keeps its number is not touched
     only = {"diagnostics": [], "only": ["source.fixAll"]}
     chosen = client.of("textDocument/codeAction", URI, range=span(0, 0, 0), context=only)
     assert [action["kind"] for action in chosen] == ["source.fixAll.nccompile"]
@@ -253,6 +256,34 @@ def test_settings_and_machines_of_two_workspaces(client: Client, tmp_path: Path)
     client.notify("workspace/didChangeWatchedFiles", {"changes": []})
     client.wait(lambda: True if not client.published(uris["two"]) else None)
     for uri in uris.values():
+        client.close(uri)
+
+
+def test_requests_that_are_not_as_the_protocol_says_are_refused(client: Client) -> None:
+    for params in ({}, {"textDocument": 5}):
+        with pytest.raises(Failed) as refused:
+            client.request("textDocument/formatting", params)
+        assert refused.value.code in {-32602, -32603}
+
+
+def test_formatting_many_lines_leaves_the_others_alone(client: Client) -> None:
+    uri = "untitled:formatting"
+    options = {"tabSize": 1, "insertSpaces": True}
+    for text, ranges in (
+        (
+            "% a\n" + "N1 G1 X1\n" * 3 + "n2g1x1\n" * 2 + "N1 G1 X1\nn2g1x1\n",
+            [span(4, 0, 0, 6), span(7, 0, 0, 8)],
+        ),
+        (
+            "% a\nN1 G1 X1\nN2 G1 X1\r\nn3g1x1",
+            [span(2, 0, 6, 3)],
+        ),  # line ends become equal, the last one is added
+        ("% a\nN1 G1 X1\n", []),
+    ):
+        client.open(uri, text)
+        edits = client.of("textDocument/formatting", uri, options=options)
+        assert [edit["range"] for edit in edits] == ranges
+        assert taken(text, edits) == format_text(Source(uri, text))
         client.close(uri)
 
 

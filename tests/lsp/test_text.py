@@ -46,6 +46,15 @@ def test_edits_equal_those_of_a_string(text: str, edits: list[tuple[Place, Place
         assert document.source().nodes == Document("untitled:a", 1, text, units).source().nodes
 
 
+def test_a_whole_new_text_reads_only_the_lines_that_differ() -> None:
+    document = Document("untitled:a", 1, "% a\nN1 X1\nN2 X2\nN3 X3\nN4 X4", "utf-16")
+    before = list(document.nodes)
+    document.replace("% a\nN1 X1\nN9 X9\nN2 X9\nN3 X3\nN4 X4")
+    assert [node is old for node, old in zip(document.nodes[:2], before[:2], strict=True)] == [True, True]
+    assert [node is old for node, old in zip(document.nodes[-2:], before[-2:], strict=True)] == [True, True]
+    assert document.source().nodes == Document("untitled:a", 1, str(document.text), "utf-16").source().nodes
+
+
 @given(TEXTS, st.integers(0, 20), st.sampled_from(["utf-8", "utf-16", "utf-32"]))
 def test_positions_there_and_back(line: str, index: int, units: str) -> None:
     line = line.replace("\n", "").replace("\r", "")

@@ -16,7 +16,7 @@ from nccompile.source import Source
 from nccompile.toolchain import Options
 from tests.lsp.client import Client, Failed, Json, span
 
-__all__ = ["Writer", "place", "without_data"]
+__all__ = ["Writer", "place", "taken", "without_data"]
 
 PIECES = [
     "N10 G1 X1 F20\n", "G2 X5 Y5 I2 J2\n", "g0x1", "\n", "\r\n", "\r", "(note", ")", "% b\n", "X1,5",
@@ -46,6 +46,14 @@ def offset(text: str, at: Json) -> int:
     before = sum(len(lines[row]) + len(ends[row]) for row in range(at["line"]))
     units = lines[at["line"]].encode("utf-16-le")[: 2 * at["character"]]
     return before + len(units.decode("utf-16-le"))
+
+
+def taken(text: str, edits: list[Json]) -> str:
+    """A text with edits that the server proposes; they lie one behind the other."""
+    for edit in reversed(edits):
+        begin, end = (offset(text, edit["range"][key]) for key in ("start", "end"))
+        text = text[:begin] + edit["newText"] + text[end:]
+    return text
 
 
 def is_inside_end(text: str, at: int) -> bool:
@@ -150,9 +158,7 @@ class Writer:
                 if error.code not in REFUSALS:
                     raise
                 return
-        for edit in edits:
-            begin, end = (offset(self.text, edit["range"][key]) for key in ("start", "end"))
-            self.replace(begin, end, edit["newText"])
+        self.become(taken(self.text, edits))
 
     def reopen(self) -> None:
         """Closes the document and opens it again."""

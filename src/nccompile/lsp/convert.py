@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import groupby
+
 from lsprotocol import types
 
 from nccompile.diagnostics import Diagnostic, Severity, render
 from nccompile.lint.base import Fix
 from nccompile.lsp.document import Document
-from nccompile.lsp.text import Place
+from nccompile.lsp.text import Place, common_ends, pieces, split
 from nccompile.source import Source, Span
 
-__all__ = ["diagnostic", "edits_of", "line_range", "place", "position", "range_of", "whole"]
+__all__ = ["diagnostic", "edits_of", "edits_to", "line_range", "place", "position", "range_of", "whole"]
 
 _SEVERITIES = {
     Severity.ERROR: types.DiagnosticSeverity.Error,
@@ -61,6 +63,26 @@ def diagnostic(document: Document, found: Diagnostic, source: Source | None) -> 
         tags=tags,
         data=None if source is None else {"rendered": render(found, source)},
     )
+
+
+def edits_to(document: Document, new: str) -> list[types.TextEdit]:
+    """The edits that make the text another one, of the lines that differ only: cursors and folds elsewhere stay."""
+    old, wanted = document.text.pieces(), pieces(*split(new))
+    if len(old) == len(wanted):
+        runs = [
+            list(run)
+            for differs, run in groupby(range(len(old)), lambda at: old[at] != wanted[at])
+            if differs
+        ]
+        return [_replaced(document, run[0], run[-1] + 1, wanted[run[0] : run[-1] + 1]) for run in runs]
+    start, end = common_ends(old, wanted)
+    return [_replaced(document, start, len(old) - end, wanted[start : len(wanted) - end])]
+
+
+def _replaced(document: Document, first: int, end: int, lines: list[str]) -> types.TextEdit:
+    """New lines in place of those from `first` to before `end`, with their line ends."""
+    last = types.Position(end, 0) if end < len(document.text.lines) else position(document.text.end())
+    return types.TextEdit(types.Range(types.Position(first, 0), last), "".join(lines))
 
 
 def edits_of(document: Document, fix: Fix) -> list[types.TextEdit]:

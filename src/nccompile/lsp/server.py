@@ -33,7 +33,17 @@ Handled = Generator[Any, Any, None]
 
 
 class ServerProtocol(LanguageServerProtocol):
-    """Leaves open documents to the session: pygls would copy the whole text at every edit."""
+    """Leaves open documents to the session: pygls would copy the whole text at every edit.  Answers requests that
+    are not as the protocol says, which pygls only logs: an editor would wait for ever."""
+
+    def structure_message(self, data: dict[str, Any]) -> Any:
+        """A message as an object."""
+        try:
+            return super().structure_message(data)
+        except JsonRpcException as error:
+            if "id" in data and "method" in data:
+                self._send_response(data["id"], error=error.to_response_error())
+            raise
 
     @lsp_method(types.TEXT_DOCUMENT_DID_OPEN)
     def lsp_text_document__did_open(self, params: types.DidOpenTextDocumentParams) -> Handled:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from nccompile.lint.base import Edit
 from nccompile.source import Span
 
-__all__ = ["Change", "Place", "Text", "joined", "split"]
+__all__ = ["Change", "Place", "Text", "common_ends", "joined", "pieces", "split"]
 
 Place = tuple[int, int]
 """Line and character of the protocol, both from 0."""
@@ -30,7 +30,20 @@ def split(text: str) -> tuple[list[str], list[str]]:
 
 def joined(lines: list[str], ends: list[str]) -> str:
     """The text of lines and the ends between them."""
-    return "".join([line + end for line, end in zip(lines, ends, strict=False)]) + lines[-1]
+    return "".join(pieces(lines, ends))
+
+
+def pieces(lines: list[str], ends: list[str]) -> list[str]:
+    """The lines with their ends."""
+    return [*[line + end for line, end in zip(lines, ends, strict=False)], lines[-1]]
+
+
+def common_ends(old: list[str], new: list[str]) -> tuple[int, int]:
+    """How many lines are the same at the start of both, and how many behind those at the end of both."""
+    short = min(len(old), len(new))
+    start = next((at for at in range(short) if old[at] != new[at]), short)
+    left = short - start
+    return start, next((at for at in range(left) if old[-1 - at] != new[-1 - at]), left)
 
 
 def _utf8(character: str) -> int:
@@ -55,33 +68,43 @@ class Text:
     def __str__(self) -> str:
         return joined(self.lines, self.ends)
 
+    def pieces(self) -> list[str]:
+        """The lines with their ends."""
+        return pieces(self.lines, self.ends)
+
     def replace_all(self, text: str) -> Change:
         """Takes a whole new text."""
-        before = len(self.lines)
+        before = self.lines
         self.lines, self.ends = split(text)
-        return 0, before, len(self.lines)
+        return self._narrowed(0, before, len(self.lines))
 
     def edit(self, start: Place, end: Place, new: str) -> Change:
         """Replaces what stands between two positions; positions outside the text are moved to its border."""
         (first, at), (last, until) = self._inside(start), self._inside(end)
         if (last, until) < (first, at):
             (first, at), (last, until) = (last, until), (first, at)
+        low = max(0, first - 1)
+        old = self.lines[low : last + 1]
         joined = self.lines[first][:at] + new + self.lines[last][until:]
         lines, ends = split(joined)
+        rest = len(self.lines) - last - 1
         self.lines[first : last + 1] = lines
         self.ends[first:last] = ends
-        return self._rejoin(first, last - first + 1, len(lines))
+        self._rejoin(low, first + len(lines))
+        return self._narrowed(low, old, len(self.lines) - rest - low)
 
-    def _rejoin(self, first: int, before: int, after: int) -> Change:
-        """Makes one line end of a CR and an LF that the edit brought together."""
-        low = max(0, first - 1)
-        before, after = before + first - low, after + first - low
-        for at in range(min(low + after, len(self.ends)) - 1, low, -1):
+    def _rejoin(self, low: int, high: int) -> None:
+        """Makes one line end of a CR and an LF that an edit brought together, behind line `low` and before `high`."""
+        for at in range(min(high, len(self.ends)) - 1, low, -1):
             if self.ends[at] == "\n" and self.ends[at - 1] == "\r" and self.lines[at] == "":
                 del self.lines[at]
                 self.ends[at - 1 : at + 1] = ["\r\n"]
-                after -= 1
-        return low, before, after
+
+    def _narrowed(self, first: int, old: list[str], after: int) -> Change:
+        """The change without the lines at its start and end that are as they were: what an editor sends may be much
+        more than what is new, the whole text when it lays it out."""
+        start, end = common_ends(old, self.lines[first : first + after])
+        return first + start, len(old) - start - end, after - start - end
 
     def _inside(self, place: Place) -> Place:
         line, character = place

@@ -10,7 +10,7 @@ from nccompile.lint.fix import apply_fixes
 from nccompile.lint.fmt import format_text, renumbered
 from nccompile.lint.layout import laid_out
 from nccompile.lsp.analysis import Analysis
-from nccompile.lsp.convert import diagnostic, edits_of, line_range, range_of, whole
+from nccompile.lsp.convert import diagnostic, edits_of, edits_to, line_range, range_of
 from nccompile.lsp.document import Document
 from nccompile.parser import Block
 
@@ -71,16 +71,13 @@ def resolved(document: Document, analysis: Analysis, action: types.CodeAction) -
         text = renumbered(source, settings.config.step).text
     else:
         raise NccompileError(f"there is nothing to do for {action.kind}")
-    edits = [] if text == source.text else [types.TextEdit(whole(document), text)]
-    action.edit = types.WorkspaceEdit(changes={document.uri: edits})
+    action.edit = types.WorkspaceEdit(changes={document.uri: edits_to(document, text)})
     return action
 
 
 def formatted(document: Document) -> list[types.TextEdit]:
     """The whole text laid out, as `nccompile fmt` does."""
-    text = str(document.text)
-    new = format_text(document.source())
-    return [] if new == text else [types.TextEdit(whole(document), new)]
+    return edits_to(document, format_text(document.source()))
 
 
 def formatted_lines(document: Document, first: int, last: int) -> list[types.TextEdit]:
