@@ -13,7 +13,7 @@ import os
 import signal
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import FrameType
 from typing import Annotated, Any
 
@@ -26,6 +26,7 @@ from nccompile.cli.dump import dump
 from nccompile.cli.explain import explain
 from nccompile.cli.export_dxf import export_dxf
 from nccompile.cli.fmt import format_programs
+from nccompile.cli.groups import expanded
 from nccompile.cli.import_dxf import import_dxf
 from nccompile.cli.info import info
 from nccompile.cli.lint import lint_programs
@@ -84,19 +85,23 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
+COMMANDS: dict[str, Callable[..., None]] = {
+    "compile": compile_program,
+    "info": info,
+    "dump": dump,
+    "sample": sample,
+    "run": run_program,
+    "plot": plot,
+    "explain": explain,
+    "lint": lint_programs,
+    "fmt": format_programs,
+    "lsp": serve,
+    "import-dxf": import_dxf,
+    "export-dxf": export_dxf,
+}
+for _name, _function in COMMANDS.items():
+    app.command(_name, cls=Guarded)(expanded(_function))
 _machine = typer.Typer(help="Machine files.", no_args_is_help=True, rich_markup_mode=None)
-app.command("compile", cls=Guarded)(compile_program)
-app.command("info", cls=Guarded)(info)
-app.command("dump", cls=Guarded)(dump)
-app.command("sample", cls=Guarded)(sample)
-app.command("run", cls=Guarded)(run_program)
-app.command("plot", cls=Guarded)(plot)
-app.command("explain", cls=Guarded)(explain)
-app.command("lint", cls=Guarded)(lint_programs)
-app.command("fmt", cls=Guarded)(format_programs)
-app.command("lsp", cls=Guarded)(serve)
-app.command("import-dxf", cls=Guarded)(import_dxf)
-app.command("export-dxf", cls=Guarded)(export_dxf)
 _machine.command("check", cls=Guarded)(check)
 _machine.callback()(lambda: None)
 app.add_typer(_machine, name="machine")

@@ -10,23 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from nccompile.cli.options import (
-    AngleTolerance,
-    Define,
-    DiagnosticsFormat,
-    JunctionDeviation,
-    MachineFile,
-    MaxJumps,
-    Passes,
-    PlannerName,
-    PlannerOption,
-    Report,
-    SkipBlocks,
-    Start,
-    TimeLawOption,
-    Verify,
-    Window,
-)
+from nccompile.cli.options import DiagnosticsFormat, MachineFile, Report, StageOptions
 from nccompile.errors import UsageError
 
 if TYPE_CHECKING:
@@ -44,39 +28,26 @@ def compile_program(
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help="The OutQueue; default: PROGRAM with .ncq."),
     ] = None,
-    start: Start = None,
-    define: Define = None,
-    skip_blocks: SkipBlocks = False,
-    max_jumps: MaxJumps = None,
-    angle_tolerance: AngleTolerance = None,
-    time_law: TimeLawOption = None,
-    planner: PlannerOption = PlannerName.LOOK_AHEAD,
-    window: Window = None,
-    junction_deviation: JunctionDeviation = None,
-    passes: Passes = None,
     print_after: Annotated[
         str | None, typer.Option("--print-after", metavar="PASS", help="Print the path behind a pass.")
     ] = None,
     time_passes: Annotated[bool, typer.Option("--time-passes", help="Print the time of each pass.")] = False,
-    verify: Verify = False,
     diagnostics: DiagnosticsFormat = Report.TEXT,
     report: Annotated[
         Path | None, typer.Option("--report", metavar="FILE", help="Totals and diagnostics as JSON.")
     ] = None,
+    *,
+    chosen: StageOptions,
 ) -> None:
     """Compile a part program to an OutQueue; a program with errors leaves no file."""
-    from nccompile.cli.inputs import ProgramOptions, finish, machine_of, output_of, read_program
+    from nccompile.cli.inputs import finish, machine_of, output_of, read_program
     from nccompile.cli.progress import progress
     from nccompile.toolchain import Compilation
 
     source = read_program(program)
     place = output_of(program, output, ".ncq")
-    settings = ProgramOptions(
-        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
-    )  # fmt: skip
     options = replace(
-        settings.resolve(machine_of(machine)),
+        chosen.resolve(machine_of(machine)),
         losses=report is not None,
         measure=report is not None or time_passes,
     )

@@ -12,28 +12,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from nccompile.cli.options import (
-    AngleTolerance,
-    Define,
-    DiagnosticsFormat,
-    Input,
-    JunctionDeviation,
-    MachineFile,
-    MaxJumps,
-    Passes,
-    PlannerName,
-    PlannerOption,
-    Report,
-    SkipBlocks,
-    Start,
-    TimeLawOption,
-    Verify,
-    Window,
-)
+from nccompile.cli.options import DiagnosticsFormat, Input, MachineFile, ProgramOptions, Report, StageOptions
 from nccompile.errors import UsageError
 
 if TYPE_CHECKING:
-    from nccompile.cli.inputs import ProgramOptions
     from nccompile.machine.model import Machine
     from nccompile.toolpath import Toolpath
 
@@ -63,28 +45,15 @@ def dump(
     stage: Annotated[
         Stage | None, typer.Option("--stage", help="Stage of a program; default: planned.")
     ] = None,
-    start: Start = None,
-    define: Define = None,
-    skip_blocks: SkipBlocks = False,
-    max_jumps: MaxJumps = None,
-    angle_tolerance: AngleTolerance = None,
-    time_law: TimeLawOption = None,
-    planner: PlannerOption = PlannerName.LOOK_AHEAD,
-    window: Window = None,
-    junction_deviation: JunctionDeviation = None,
-    passes: Passes = None,
-    verify: Verify = False,
     diagnostics: DiagnosticsFormat = Report.TEXT,
+    *,
+    chosen: StageOptions,
 ) -> None:
     """Print the segments of an OutQueue or program."""
-    from nccompile.cli.inputs import ProgramOptions, machine_of
+    from nccompile.cli.inputs import machine_of
     from nccompile.toolpath.text import format_toolpaths
 
-    options = ProgramOptions(
-        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, verify,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
-    )  # fmt: skip
-    chunks = _chunks(path, machine_of(machine), options, stage, diagnostics)
+    chunks = _chunks(path, machine_of(machine), chosen, stage, diagnostics)
     if form is Form.TEXT:
         sys.stdout.writelines(line + "\n" for line in format_toolpaths(chunks))
     elif form is Form.JSONL:

@@ -8,16 +8,7 @@ from typing import Annotated
 
 import typer
 
-from nccompile.cli.options import (
-    Define,
-    DiagnosticsFormat,
-    Input,
-    MachineFile,
-    Passes,
-    Report,
-    SkipBlocks,
-    Start,
-)
+from nccompile.cli.options import DiagnosticsFormat, Input, MachineFile, Passes, ReadOptions, Report
 
 __all__ = ["export_dxf"]
 
@@ -29,11 +20,10 @@ def export_dxf(
         Path | None,
         typer.Option("--output", "-o", metavar="FILE.dxf", help="The drawing; default: INPUT.dxf."),
     ] = None,
-    start: Start = None,
-    define: Define = None,
-    skip_blocks: SkipBlocks = False,
     passes: Passes = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
+    *,
+    chosen: ReadOptions,
 ) -> None:
     """Draw a program or an OutQueue as DXF: rapids, feed moves and switch points on layers of their own.
 
@@ -46,7 +36,7 @@ def export_dxf(
 
     place = output if output is not None else path.with_suffix(".dxf")
     drawing = DxfExport()
-    settings = {"start": start, "define": define, "skip_blocks": skip_blocks, "passes": passes}
+    settings = {**vars(chosen), "passes": passes}
     count = sum(
         drawing.add(chunks, suffix) for suffix, chunks in stages(path, machine, settings, diagnostics)
     )

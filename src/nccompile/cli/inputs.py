@@ -10,16 +10,13 @@ from pathlib import Path
 import typer
 
 from nccompile.backend import ncq
-from nccompile.cli.options import Report, parse_defines, parse_start
-from nccompile.cli.queues import STDIN, is_queue, read_queue
+from nccompile.cli.options import ProgramOptions, Report
+from nccompile.cli.queues import STDIN, is_queue, read_queue, require_program
 from nccompile.cli.report import report
-from nccompile.decoder import DecodeOptions
 from nccompile.errors import UsageError
 from nccompile.machine.model import Machine, default_machine, load
-from nccompile.passes.pipeline import parse as parse_passes
-from nccompile.passes.velocity import LOOK_AHEAD, WINDOW
 from nccompile.source import Source
-from nccompile.toolchain import Compilation, Options
+from nccompile.toolchain import Compilation
 from nccompile.toolpath import Toolpath
 
 __all__ = [
@@ -32,43 +29,6 @@ __all__ = [
     "output_of",
     "read_program",
 ]
-
-
-@dataclass(frozen=True)
-class ProgramOptions:
-    """Options that act on a program while it is compiled, as they came from the command line."""
-
-    start: str | None = None
-    define: list[str] | None = None
-    skip_blocks: bool = False
-    max_jumps: int | None = None
-    angle_tolerance: float | None = None
-    time_law: str | None = None
-    verify: bool = False
-    planner: str | None = None
-    window: int | None = None
-    junction_deviation: float | None = None
-    passes: str | None = None
-
-    def resolve(self, machine: Machine) -> Options:
-        """The options of a compilation; raises UsageError."""
-        decoder = DecodeOptions(
-            start=parse_start(self.start),
-            defines=parse_defines(self.define),
-            skip_blocks=self.skip_blocks,
-            max_switches=machine.path.max_switches,
-            max_jumps=DecodeOptions.max_jumps if self.max_jumps is None else self.max_jumps,
-        )
-        return Options(
-            machine, decoder, self.angle_tolerance, self.time_law, self.verify, self.planner or LOOK_AHEAD,
-            WINDOW if self.window is None else self.window or None, self.junction_deviation,
-            passes=parse_passes(self.passes or ""),
-        )  # fmt: skip
-
-    @property
-    def given(self) -> list[str]:
-        """The options in use, as they are spelt."""
-        return ["--" + name.replace("_", "-") for name, value in vars(self).items() if value]
 
 
 @dataclass(frozen=True)
@@ -100,10 +60,7 @@ def read_program(path: Path) -> Source:
     """The program at a path, `-` for standard input; raises UsageError."""
     if path == STDIN:
         return Source.from_stream("<stdin>", sys.stdin.buffer)
-    if is_queue(path):
-        raise UsageError(f"{path} is an OutQueue, not a part program: it was compiled already")
-    if path.is_char_device() or path.is_block_device():
-        raise UsageError(f"{path} is a device, not a part program; - reads standard input")
+    require_program(path)
     try:
         return Source.read(path)
     except OSError as error:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from nccompile.cli.options import Define, MachineFile, MaxJumps, SkipBlocks, Start
+from nccompile.cli.options import MachineFile, ReadOptions
 from nccompile.cli.queues import STDIN
 
 if TYPE_CHECKING:
@@ -53,10 +53,8 @@ def lint_programs(
     strict: Annotated[bool, typer.Option("--strict", help="Exit code 1 for warnings too.")] = False,
     statistics: Annotated[bool, typer.Option("--statistics", help="Count findings by code only.")] = False,
     machine: MachineFile = None,
-    start: Start = None,
-    define: Define = None,
-    skip_blocks: SkipBlocks = False,
-    max_jumps: MaxJumps = None,
+    *,
+    chosen: ReadOptions,
 ) -> None:
     """Check part programs; settings come from nccompile.toml or pyproject.toml above them."""
     from nccompile.cli.programs import programs_in, read_bytes, require_file
@@ -73,14 +71,13 @@ def lint_programs(
     plain = form is Format.TEXT and machine is None and not (fix or statistics)
     if plain and all(not data.strip() for _, data in texts.values()):
         _say_empty({path: data for path, (_, data) in texts.items()})
-    from nccompile.cli.inputs import ProgramOptions, machine_of
+    from nccompile.cli.inputs import machine_of
     from nccompile.lint.output import FORMATS
 
-    settings = ProgramOptions(start, define, skip_blocks, max_jumps)
     found = []
     with _without_collection():
         for path, (config, data) in texts.items():
-            options = settings.resolve(machine_of(machine if machine is not None else config.machine))
+            options = chosen.resolve(machine_of(machine if machine is not None else config.machine))
             found.append(_check(path, data, options, config, limit, fix))
     out = sys.stderr if fix and STDIN in texts else sys.stdout
     out.write(_statistics(found) if statistics else FORMATS[form](found))

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from nccompile.errors import UsageError
 
+if TYPE_CHECKING:
+    from nccompile.decoder import DecodeOptions
+    from nccompile.machine.model import Machine
+    from nccompile.toolchain import Options
+
 __all__ = [
     "AngleTolerance",
+    "CycleTime",
     "Define",
     "DiagnosticsFormat",
     "Input",
@@ -23,8 +30,11 @@ __all__ = [
     "Passes",
     "PlannerName",
     "PlannerOption",
+    "ProgramOptions",
+    "ReadOptions",
     "Report",
     "SkipBlocks",
+    "StageOptions",
     "Start",
     "TimeLaw",
     "TimeLawOption",
@@ -92,7 +102,9 @@ AngleTolerance = Annotated[
 TimeLawOption = Annotated[
     TimeLaw | None, typer.Option("--time-law", help="Velocity profile; default: the machine's.")
 ]
-PlannerOption = Annotated[PlannerName, typer.Option("--planner", help="How velocities are planned.")]
+PlannerOption = Annotated[
+    PlannerName | None, typer.Option("--planner", help="How velocities are planned; default: look-ahead.")
+]
 Window = Annotated[
     int | None,
     typer.Option("--window", metavar="N", min=0, help="Segments looked ahead, 0 for all; default: 30000."),
@@ -114,6 +126,75 @@ Passes = Annotated[
 ]
 Verify = Annotated[bool, typer.Option("--verify", help="Check the toolpath after every stage.")]
 DiagnosticsFormat = Annotated[Report, typer.Option("--diagnostics", help="Diagnostics as text or JSON.")]
+CycleTime = Annotated[
+    int | None,
+    typer.Option("--cycle-us", metavar="US", min=100, max=100_000, help="Default: the machine's cycle."),
+]
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """Options that act while a program is read, as they came from the command line."""
+
+    start: Start = None
+    define: Define = None
+    skip_blocks: SkipBlocks = False
+    max_jumps: MaxJumps = None
+
+    def decoding(self, machine: Machine) -> DecodeOptions:
+        """The options of the decoder; raises UsageError."""
+        from nccompile.decoder import DecodeOptions
+
+        return DecodeOptions(
+            start=parse_start(self.start),
+            defines=parse_defines(self.define),
+            skip_blocks=self.skip_blocks,
+            max_switches=machine.path.max_switches,
+            max_jumps=DecodeOptions.max_jumps if self.max_jumps is None else self.max_jumps,
+        )
+
+    def resolve(self, machine: Machine) -> Options:
+        """The options of a compilation; raises UsageError."""
+        from nccompile.toolchain import Options
+
+        return Options(machine, self.decoding(machine))
+
+    @property
+    def given(self) -> list[str]:
+        """The options in use, as they are spelt."""
+        return ["--" + name.replace("_", "-") for name, value in vars(self).items() if value]
+
+
+@dataclass(frozen=True)
+class ProgramOptions(ReadOptions):
+    """Options that act while a program is compiled; `verify` is one only of commands that check the stages."""
+
+    angle_tolerance: AngleTolerance = None
+    time_law: TimeLawOption = None
+    verify: bool = False
+    planner: PlannerOption = None
+    window: Window = None
+    junction_deviation: JunctionDeviation = None
+    passes: Passes = None
+
+    def resolve(self, machine: Machine) -> Options:
+        """The options of a compilation; raises UsageError."""
+        from nccompile.passes.pipeline import parse
+        from nccompile.passes.velocity import LOOK_AHEAD, WINDOW
+        from nccompile.toolchain import Options
+
+        return Options(
+            machine, self.decoding(machine), self.angle_tolerance, self.time_law, self.verify,
+            self.planner or LOOK_AHEAD, WINDOW if self.window is None else self.window or None,
+            self.junction_deviation, passes=parse(self.passes or ""),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class StageOptions(ProgramOptions):
+    """The same with `--verify`."""
+
+    verify: Verify = False
 
 
 def parse_start(text: str | None) -> dict[str, float]:
