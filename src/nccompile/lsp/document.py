@@ -33,7 +33,8 @@ def path_of(uri: str) -> Path | None:
 class Document:
     """One open document.
 
-    version: of the client;  analysis: the newest one, maybe of an older version;  shown: what was published.
+    version: of the client;  analysis: the newest one, maybe of an older version, and the seconds it took;
+    shown: what was published.
     """
 
     def __init__(self, uri: str, version: int, text: str, encoding: str) -> None:
@@ -44,6 +45,7 @@ class Document:
         self.text = Text(text, encoding)
         self.nodes: list[Node] = [read_line(at, line) for at, line in enumerate(self.text.lines, 1)]
         self.analysis: Analysis | None = None
+        self.seconds = 0.0
         self.shown: list[Diagnostic] = []
 
     def edit(self, start: Place, end: Place, new: str) -> None:

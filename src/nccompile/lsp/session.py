@@ -25,11 +25,8 @@ from nccompile.machine.model import default_machine, load
 
 __all__ = ["Outdated", "Session", "Work"]
 
-LARGE = 3000
-"""Lines from which a pause in typing is waited for."""
-
-PAUSE, LONG_PAUSE = 0.02, 0.2
-"""Pause before the analysis of a small and of a large document [s]."""
+PAUSE, LONGEST_PAUSE = 0.02, 0.2
+"""Least and greatest pause in typing before an analysis [s]; between them, half of what the last one took."""
 
 IDLE = 30.0
 """Time without edits after which garbage is looked for [s]: among millions of words that takes a while."""
@@ -139,7 +136,7 @@ class Session:
 
     async def _run(self, work: Work) -> None:
         document = work.document
-        pause = LONG_PAUSE if len(document.text.lines) > LARGE else PAUSE
+        pause = min(max(PAUSE, 0.5 * document.seconds), LONGEST_PAUSE)
         await asyncio.sleep(pause)
         if not work.wanted:
             return
@@ -153,8 +150,9 @@ class Session:
             document.analysis = analysis
             document.nodes = list(snapshot.nodes)
             document.shown = analysis.report.ordered()
+            document.seconds = time.perf_counter() - begun
             self._publish(document, True)
-            self._done(document, time.perf_counter() - begun)
+            self._done(document, document.seconds)
             work.checked.set_result(analysis)
             await asyncio.sleep(pause)  # times are for those who read, not for those who type
             if not work.wanted:

@@ -114,15 +114,15 @@ def placed(node: Block | Header, line: int) -> Block | Header:
 
 def placed_block(block: Block, line: int) -> Block:
     """The block with another line number in every part."""
-    number = block.number
+    number, comments, new = block.number, block.comments, tuple.__new__  # as in `plain_block`
     return Block(
         line,
         block.column,
         block.end,
-        None if number is None else number._replace(line=line),
-        tuple([Word(w[0], w[1], w[2], line, w[4]) for w in block.words]),
+        None if number is None else new(Word, (number[0], number[1], number[2], line, number[4])),
+        tuple([new(Word, (w[0], w[1], w[2], line, w[4])) for w in block.words]),
         block.skip,
-        tuple([c._replace(line=line) for c in block.comments]) if block.comments else (),
+        tuple([c._replace(line=line) for c in comments]) if comments else (),
         block.sound,
     )
 
