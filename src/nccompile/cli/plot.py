@@ -8,23 +8,7 @@ from typing import Annotated
 
 import typer
 
-from nccompile.cli.options import (
-    AngleTolerance,
-    Define,
-    DiagnosticsFormat,
-    Input,
-    JunctionDeviation,
-    MachineFile,
-    MaxJumps,
-    Passes,
-    PlannerName,
-    PlannerOption,
-    Report,
-    SkipBlocks,
-    Start,
-    TimeLawOption,
-    Window,
-)
+from nccompile.cli.options import DiagnosticsFormat, Input, MachineFile, ProgramOptions, Report
 from nccompile.errors import UsageError
 
 __all__ = ["plot"]
@@ -41,21 +25,13 @@ def plot(
         Path | None,
         typer.Option("--output", "-o", metavar="FILE", help=".png, .svg or .pdf; default: INPUT.png."),
     ] = None,
-    start: Start = None,
-    define: Define = None,
-    skip_blocks: SkipBlocks = False,
-    max_jumps: MaxJumps = None,
-    angle_tolerance: AngleTolerance = None,
-    time_law: TimeLawOption = None,
-    planner: PlannerOption = PlannerName.LOOK_AHEAD,
-    window: Window = None,
-    junction_deviation: JunctionDeviation = None,
-    passes: Passes = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
+    *,
+    chosen: ProgramOptions,
 ) -> None:
     """Draw the path, and velocity and acceleration over time."""
     from nccompile.backend.samples import sample
-    from nccompile.cli.inputs import ProgramOptions, machine_of, open_job, output_of, read_program
+    from nccompile.cli.inputs import machine_of, open_job, output_of, read_program
     from nccompile.cli.queues import STDIN
     from nccompile.kernels import expect_work
     from nccompile.machine.limits import limits
@@ -68,17 +44,13 @@ def plot(
     if place.suffix.lower() not in SUFFIXES:
         raise UsageError(f"{place}: pictures are written as {', '.join(SUFFIXES)}")
     axes_of = machine_of(machine)
-    options = ProgramOptions(
-        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, False,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
-    )  # fmt: skip
-    job = open_job(path, axes_of, options, diagnostics)
+    job = open_job(path, axes_of, chosen, diagnostics)
     cycle = axes_of.cycle * max(1, ceil(job.job_time / axes_of.cycle / MOST_SAMPLES))
     expect_work(int(job.job_time / cycle))
     motion = gather(job.axes, sample(job.chunks(), cycle, LAWS[job.time_law], job.smoothing))
     title = f"{job.name}: {job.segments} segments, {job.job_time:.3f} s"
     before = None
-    if passes and path != STDIN:
-        before = Compilation(read_program(path), options.resolve(axes_of)).decoded()
+    if chosen.passes and path != STDIN:
+        before = Compilation(read_program(path), chosen.resolve(axes_of)).decoded()
     save(place, job.chunks(), motion, limits(axes_of, job.axes), title=title, before=before)
     print(f"{place}: path, and velocity and acceleration over {job.job_time:.3f} s")
