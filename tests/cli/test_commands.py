@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -188,3 +189,21 @@ def test_machine_check(command: Command) -> None:
 @pytest.mark.parametrize("arguments", [["--help"], ["compile", "--help"], ["machine", "check", "--help"]])
 def test_help(command: Command, arguments: list[str]) -> None:
     assert command(*arguments).code == 0
+
+
+@pytest.mark.parametrize("name", ["dump", "plot", "run", "sample"])
+def test_commands_share_the_options_of_programs(command: Command, name: str) -> None:
+    def options(of: str) -> set[str]:
+        return set(re.findall(r"--[a-z-]+", command(of, "--help").out))
+
+    alone = {"--output", "--report", "--print-after", "--time-passes", "--verify"}
+    assert options("compile") - alone <= options(name)
+
+
+def test_a_program_from_a_pipe_is_read_once(command: Command, program: Path, tmp_path: Path) -> None:
+    """Drawings of both stages need the program twice."""
+    text = program.read_bytes()
+    result = command("export-dxf", "-", "-o", "a.dxf", "-p", "fit-arcs", stdin=text)
+    assert result.code == 0
+    assert command("export-dxf", program, "-o", "b.dxf", "-p", "fit-arcs").out[6:] == result.out[6:]
+    assert command("plot", "-", "-o", "a.png", "-p", "fit-arcs", stdin=text).code == 0

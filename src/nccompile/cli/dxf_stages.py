@@ -32,11 +32,12 @@ def stages(
             raise UsageError(f"{path} is an OutQueue: {', '.join(chosen.given)} acts on programs only")
         yield "", read_queue(path).chunks()
         return
-    compilation = Compilation(read_program(path), chosen.resolve(machine_of(machine)))
+    source, options = read_program(path), chosen.resolve(machine_of(machine))
+    compilation = Compilation(source, options)
     passed = list(compilation.passed())
     finish(compilation, form)
     if not chosen.passes:
         yield "", passed
         return
-    yield "", Compilation(read_program(path), chosen.resolve(machine_of(machine))).decoded()
+    yield "", Compilation(source, options).decoded()
     yield PASSES, passed

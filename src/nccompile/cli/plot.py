@@ -32,7 +32,6 @@ def plot(
     """Draw the path, and velocity and acceleration over time."""
     from nccompile.backend.samples import sample
     from nccompile.cli.inputs import machine_of, open_job, output_of, read_program
-    from nccompile.cli.queues import STDIN
     from nccompile.kernels import expect_work
     from nccompile.machine.limits import limits
     from nccompile.passes.velocity.settings import LAWS
@@ -50,7 +49,7 @@ def plot(
     motion = gather(job.axes, sample(job.chunks(), cycle, LAWS[job.time_law], job.smoothing))
     title = f"{job.name}: {job.segments} segments, {job.job_time:.3f} s"
     before = None
-    if chosen.passes and path != STDIN:
+    if chosen.passes and path.is_file():  # a pipe cannot be read again
         before = Compilation(read_program(path), chosen.resolve(axes_of)).decoded()
     save(place, job.chunks(), motion, limits(axes_of, job.axes), title=title, before=before)
     print(f"{place}: path, and velocity and acceleration over {job.job_time:.3f} s")
