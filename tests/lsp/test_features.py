@@ -6,12 +6,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from nccompile.diagnostics import render
 from nccompile.lint.config import Config
 from nccompile.lint.engine import lint
 from nccompile.lint.fmt import format_text
+from nccompile.lsp.features.tokens import difference
 from nccompile.source import Source
 from tests.lint.programs import OPTIONS
 from tests.lsp.client import Client, Failed, serving, span, uri_of
@@ -214,9 +218,38 @@ def test_semantic_tokens(client: Client) -> None:
     ]
     assert ("$n$", "variable") in named
     assert ("M8", "function") in named
+    assert client.capabilities["semanticTokensProvider"]["full"] == {"delta": True}
     some = client.of("textDocument/semanticTokens/range", URI, range=span(3, 0, 3))["data"]
     assert some == [3, 0, 3, legend.index("label"), 0, 0, 4, 2, legend.index("keyword"), 0,
                     0, 3, 3, legend.index("property"), 0, 0, 4, 3, legend.index("parameter"), 0]  # fmt: skip
+
+
+def test_semantic_tokens_after_an_edit_are_a_difference(client: Client) -> None:
+    uri = "untitled:tokens"
+    client.open(uri, "% a\nN10 G1 X1\nN20 G1 X2\nN30 G1 X3\n")
+    first = client.of("textDocument/semanticTokens/full", uri)
+    numbers, name = first["data"], first["resultId"]
+    for change in (
+        {"range": span(2, 4, 6), "text": "(\u00e4) G0"},
+        {"text": "% a\nM8\n"},
+        {"text": "% a\nM8\n"},
+    ):
+        client.change(uri, change)
+        answer = client.of("textDocument/semanticTokens/full/delta", uri, previousResultId=name)
+        for edit in answer["edits"]:
+            numbers[edit["start"] : edit["start"] + edit["deleteCount"]] = edit["data"]
+        assert numbers == client.of("textDocument/semanticTokens/full", uri)["data"]
+        name = client.of("textDocument/semanticTokens/full", uri)["resultId"]
+    assert "data" in client.of("textDocument/semanticTokens/full/delta", uri, previousResultId="unknown")
+    client.close(uri)
+
+
+@given(st.lists(st.integers(0, 2)), st.lists(st.integers(0, 2)))
+def test_the_difference_of_numbers_leads_from_one_to_the_other(old: list[int], new: list[int]) -> None:
+    made = list(old)
+    for edit in difference(np.array(old, np.int32), np.array(new, np.int32)):
+        made[edit.start : edit.start + edit.delete_count] = edit.data or []
+    assert made == new
 
 
 def test_positions_count_what_the_client_asks_for(client: Client) -> None:

@@ -123,9 +123,11 @@ class Writer:
         here = {"position": {"line": line, "character": self.random.randint(0, 8)}}
         area = {"range": span(line, 0, 0, line + 20)}
         asked: list[tuple[str, Json]] = [
-            ("hover", here), ("completion", here), ("definition", here), ("inlayHint", area), ("codeLens", {}),
-            ("references", {**here, "context": {"includeDeclaration": True}}), ("documentSymbol", {}),
-            ("foldingRange", {}), ("semanticTokens/full", {}), ("codeAction", {**area, "context": {"diagnostics": []}}),
+            ("hover", here), ("completion", here), ("definition", here), ("rename", {**here, "newName": "7"}),
+            ("references", {**here, "context": {"includeDeclaration": True}}), ("inlayHint", area),
+            ("codeAction", {**area, "context": {"diagnostics": []}}), ("codeLens", {}), ("documentSymbol", {}),
+            ("foldingRange", {}), ("semanticTokens/full", {}),
+            ("semanticTokens/full/delta", {"previousResultId": "1"}),
         ]  # fmt: skip
         numbers = []
         for method, params in self.random.sample(asked, 5):

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from nccompile.decoder import DecodeOptions
 from nccompile.errors import NccompileError
@@ -21,6 +23,9 @@ from nccompile.toolpath import Toolpath
 from nccompile.toolpath.columns import Floats, Ints
 
 __all__ = ["Analysis", "Settings", "Times", "analyse", "timed"]
+
+
+Places: TypeAlias = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -79,14 +84,20 @@ class Analysis:
         program = self.program
         return [(program.blocks[at].line, code) for at, code in program.instructions(90, 91)]
 
+    @cached_property
+    def _first_passes(self) -> tuple[Places, Places, Places]:
+        """The source lines that have segments, rising, and begin and end of the segments of their first pass."""
+        lines = self.path.line
+        begins = np.flatnonzero(np.diff(lines, prepend=-1))
+        ends = np.append(begins[1:], np.intp(len(lines)))
+        found, first = np.unique(lines[begins].astype(np.intp), return_index=True)
+        return found, begins[first], ends[first]
+
     def rows(self, line: int) -> range:
         """The segments of a source line, from 1: those of its first pass if it runs several times."""
-        hits = np.flatnonzero(self.path.line == line)
-        if not len(hits):
-            return range(0)
-        broken = np.flatnonzero(np.diff(hits) > 1)
-        last = hits[broken[0]] if len(broken) else hits[-1]
-        return range(int(hits[0]), int(last) + 1)
+        lines, begins, ends = self._first_passes
+        at = int(np.searchsorted(lines, line))
+        return range(int(begins[at]), int(ends[at])) if at < len(lines) and lines[at] == line else range(0)
 
 
 def analyse(source: ReadSource, version: int, settings: Settings, wanted: Callable[[], bool]) -> Analysis:

@@ -6,6 +6,7 @@ moved when the next analysis needs them.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -81,6 +82,17 @@ class Document:
         fault = node.fault
         span = Span(node.block.line, fault.begin + 1, fault.end + 1)
         return Diagnostic(fault.code, Severity.ERROR, fault.message, span, self.name, fault.help)
+
+    def copy(self) -> Document:
+        """The document as it is, for a thread to read: edits do not reach the copy."""
+        twin = copy(self)
+        twin.text, twin.nodes, twin.shown = self.text.copy(), list(self.nodes), list(self.shown)
+        return twin
+
+    def in_line(self, line: int) -> Block | Header | None:
+        """What stands in a line, from 0; its line number may be one from before an edit."""
+        node = self.nodes[line]
+        return None if isinstance(node, Unread) else node
 
     def node(self, line: int) -> Block | Header | None:
         """What stands in a line, from 0, with its number; None if it is empty or cannot be read."""

@@ -18,6 +18,7 @@ def make_server() -> NcServer:
     server = NcServer()
     _documents(server)
     _reading(server)
+    _colouring(server)
     _navigating(server)
     _changing(server)
     _acting(server)
@@ -35,6 +36,7 @@ def _documents(server: NcServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_DID_CLOSE)
     def closed(params: types.DidCloseTextDocumentParams) -> None:
+        server.colours.forget(params.text_document.uri)
         server.session.close(params.text_document.uri)
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
@@ -43,7 +45,7 @@ def _documents(server: NcServer) -> None:
 
     @server.feature(types.SHUTDOWN)
     def shut_down(_: None) -> None:
-        server.session.shut_down()
+        server.shut_down()
 
     @server.feature(types.INITIALIZED)
     def initialized(_: types.InitializedParams) -> None:
@@ -73,21 +75,39 @@ def _reading(server: NcServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
     async def hinted(params: types.InlayHintParams) -> list[types.InlayHint]:
-        document, analysis = await server.analysis(params.text_document.uri, with_times=True)
-        return hints.hints(document, analysis, params.range.start.line, params.range.end.line)
+        uri, asked = params.text_document.uri, params.range
+        _, analysis = await server.analysis(uri, with_times=True)
+        return await server.beside(
+            uri, lambda document: hints.hints(document, analysis, asked.start.line, asked.end.line), now=True
+        )
 
     @server.feature(types.TEXT_DOCUMENT_CODE_LENS)
     async def lenses(params: types.CodeLensParams) -> list[types.CodeLens]:
-        document, analysis = await server.analysis(params.text_document.uri, with_times=True)
-        return hints.lenses(document, analysis)
+        uri = params.text_document.uri
+        _, analysis = await server.analysis(uri, with_times=True)
+        return await server.beside(uri, lambda document: hints.lenses(document, analysis), now=True)
 
-    legend = types.SemanticTokensRegistrationOptions(tokens.LEGEND, full=True, range=True)
+
+def _colouring(server: NcServer) -> None:
+    """Semantic tokens."""
+    legend = types.SemanticTokensRegistrationOptions(
+        tokens.LEGEND, full=types.SemanticTokensFullDelta(delta=True), range=True
+    )
 
     @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL, legend)
-    def all_tokens(params: types.SemanticTokensParams) -> types.SemanticTokens:
-        return types.SemanticTokens(tokens.tokens(server.document(params.text_document.uri)))
+    async def all_tokens(params: types.SemanticTokensParams) -> types.SemanticTokens:
+        uri = params.text_document.uri
+        return server.colours.full(uri, await server.beside(uri, tokens.tokens, now=True))
 
-    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE, legend)
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL_DELTA)
+    async def changed_tokens(
+        params: types.SemanticTokensDeltaParams,
+    ) -> types.SemanticTokens | types.SemanticTokensDelta:
+        uri = params.text_document.uri
+        numbers = await server.beside(uri, tokens.tokens, now=True)
+        return server.colours.since(uri, params.previous_result_id, numbers)
+
+    @server.feature(types.TEXT_DOCUMENT_SEMANTIC_TOKENS_RANGE)
     def some_tokens(params: types.SemanticTokensRangeParams) -> types.SemanticTokens:
         document, asked = server.document(params.text_document.uri), params.range
         return types.SemanticTokens(tokens.tokens(document, asked.start.line, asked.end.line))
@@ -97,23 +117,26 @@ def _navigating(server: NcServer) -> None:
     """Ways through the text."""
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
-    def definition(params: types.DefinitionParams) -> list[types.Location]:
-        document = server.document(params.text_document.uri)
-        return navigation.definitions(document, convert.place(params.position))
+    async def definition(params: types.DefinitionParams) -> list[types.Location]:
+        at = convert.place(params.position)
+        return await server.beside(
+            params.text_document.uri, lambda document: navigation.definitions(document, at), now=True
+        )
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
-    def references(params: types.ReferenceParams) -> list[types.Location]:
-        document = server.document(params.text_document.uri)
-        declared = params.context.include_declaration
-        return navigation.references(document, convert.place(params.position), declared)
+    async def references(params: types.ReferenceParams) -> list[types.Location]:
+        at, declared = convert.place(params.position), params.context.include_declaration
+        return await server.beside(
+            params.text_document.uri, lambda document: navigation.references(document, at, declared), now=True
+        )
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
-    def symbols(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
-        return outline.symbols(server.document(params.text_document.uri))
+    async def symbols(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
+        return await server.beside(params.text_document.uri, outline.symbols)
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
-    def foldings(params: types.FoldingRangeParams) -> list[types.FoldingRange]:
-        return outline.foldings(server.document(params.text_document.uri))
+    async def foldings(params: types.FoldingRangeParams) -> list[types.FoldingRange]:
+        return await server.beside(params.text_document.uri, outline.foldings)
 
 
 def _changing(server: NcServer) -> None:
@@ -132,17 +155,19 @@ def _changing(server: NcServer) -> None:
         return navigation.prepared(document, convert.place(params.position))
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
-    def renamed(params: types.RenameParams) -> types.WorkspaceEdit:
-        document = server.document(params.text_document.uri)
+    async def renamed(params: types.RenameParams) -> types.WorkspaceEdit:
+        uri, at, name = params.text_document.uri, convert.place(params.position), params.new_name
         try:
-            edits = navigation.renamed(document, convert.place(params.position), params.new_name)
+            edits = await server.beside(
+                uri, lambda document: navigation.renamed(document, at, name), now=True
+            )
         except navigation.CannotRename as error:
             raise server.refused(error) from None
-        return types.WorkspaceEdit(changes={document.uri: edits})
+        return types.WorkspaceEdit(changes={uri: edits})
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
-    def formatted(params: types.DocumentFormattingParams) -> list[types.TextEdit]:
-        return actions.formatted(server.document(params.text_document.uri))
+    async def formatted(params: types.DocumentFormattingParams) -> list[types.TextEdit]:
+        return await server.beside(params.text_document.uri, actions.formatted, now=True)
 
     @server.feature(types.TEXT_DOCUMENT_RANGE_FORMATTING)
     def formatted_lines(params: types.DocumentRangeFormattingParams) -> list[types.TextEdit]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import sys
-from collections.abc import Generator
-from typing import Any
+from collections.abc import Callable, Generator
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, TypeVar
 
 from lsprotocol import types
 from pygls.exceptions import JsonRpcContentModified, JsonRpcException, JsonRpcInvalidParams
@@ -16,6 +17,7 @@ from pygls.protocol.language_server import lsp_method
 from nccompile.errors import NccompileError
 from nccompile.lsp import convert
 from nccompile.lsp.analysis import Analysis
+from nccompile.lsp.colours import Colours
 from nccompile.lsp.document import Document
 from nccompile.lsp.features.actions import resolved
 from nccompile.lsp.session import Outdated, Session
@@ -29,6 +31,7 @@ CHECKED = "nccompile/checked"
 _SWITCH_INTERVAL = 0.0005
 """Time after which the analysis makes way for requests [s]."""
 
+Answer = TypeVar("Answer")
 Handled = Generator[Any, Any, None]
 
 
@@ -67,6 +70,8 @@ class NcServer(LanguageServer):
     def __init__(self) -> None:
         super().__init__("nccompile", VERSION, protocol_cls=ServerProtocol)
         self.session = Session(self._publish, self._say, self._checked)
+        self.colours = Colours()
+        self._readers = ThreadPoolExecutor(1, thread_name_prefix="reader")
         sys.setswitchinterval(_SWITCH_INTERVAL)
 
     @property
@@ -82,6 +87,18 @@ class NcServer(LanguageServer):
             raise JsonRpcInvalidParams(f"{uri} is not open")
         return document
 
+    async def beside(self, uri: str, compute: Callable[[Document], Answer], *, now: bool = False) -> Answer:
+        """What is computed of a document as it is; in a thread, so that edits need not wait for it.
+
+        now: whether the answer counts only if the document was not edited meanwhile.
+        """
+        document = self.document(uri)
+        copy = document.copy()
+        answer = await asyncio.get_running_loop().run_in_executor(self._readers, compute, copy)
+        if now and (self.document(uri) is not document or document.version != copy.version):
+            raise JsonRpcContentModified("the document was edited meanwhile")
+        return answer
+
     async def analysis(self, uri: str, *, with_times: bool = False) -> tuple[Document, Analysis]:
         """A document with the analysis of its newest version."""
         try:
@@ -90,6 +107,11 @@ class NcServer(LanguageServer):
             raise JsonRpcInvalidParams(f"{uri} is not open") from None
         except Outdated:
             raise JsonRpcContentModified("the document was edited meanwhile") from None
+
+    def shut_down(self) -> None:
+        """Gives up what is under way."""
+        self.session.shut_down()
+        self._readers.shutdown(wait=False, cancel_futures=True)
 
     def refused(self, error: Exception) -> JsonRpcException:
         """An answer that says why something cannot be done."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from copy import copy
 
 from nccompile.lint.base import Edit
 from nccompile.source import Span
@@ -67,6 +68,12 @@ class Text:
 
     def __str__(self) -> str:
         return joined(self.lines, self.ends)
+
+    def copy(self) -> Text:
+        """The same text; edits of one do not reach the other."""
+        twin = copy(self)
+        twin.lines, twin.ends = list(self.lines), list(self.ends)
+        return twin
 
     def pieces(self) -> list[str]:
         """The lines with their ends."""

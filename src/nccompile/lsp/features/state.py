@@ -35,8 +35,7 @@ class State(NamedTuple):
 def state_behind(analysis: Analysis, line: int) -> State:
     """The state behind a line, from 1."""
     program = analysis.program
-    lines = [block.line for block in program.blocks]
-    at = bisect_right(lines, line) - 1
+    at = bisect_right(program.blocks, line, key=lambda block: block.line) - 1
     in_force = []
     for group in _SHOWN:
         code = _last_of(program, group, at) or _DEFAULTS.get(group, 0 if group is Group.DRIVE else None)
