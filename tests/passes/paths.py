@@ -203,11 +203,14 @@ _offsets = st.sampled_from([0.0, 0.0, 1e6])
 
 
 @st.composite
-def paths(draw: st.DrawFn, *, most: int = 16, marks: bool = True, flat: bool = False) -> Toolpath:
+def paths(
+    draw: st.DrawFn, *, most: int = 16, marks: bool = True, flat: bool = False, stops: bool = True
+) -> Toolpath:
     """A decoded path of up to `most` segments."""
     off = draw(_offsets)
     sketch = Sketch((off, -off, 0.0, 0.0))
-    kinds = ["line", "line", "line", "arc", "arc", "ellipse", "cubic", "rapid", "m", "jump"]
+    kinds = ["line", "line", "line", "arc", "arc", "ellipse", "cubic"]
+    kinds += ["rapid", "m", "jump"] if stops else []
     for _ in range(draw(st.integers(1, most))):
         kind = draw(st.sampled_from(kinds))
         _segment(draw, sketch, kind, flat)

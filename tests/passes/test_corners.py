@@ -15,24 +15,18 @@ from nccompile.passes.base import Pass
 from nccompile.passes.round_corners import RoundCorners
 from nccompile.passes.smooth_corners import SmoothCorners
 from nccompile.toolpath.columns import Kind, Mark, Plane, Toolpath
-from tests.passes.paths import SIZES, Probe, Sketch, paths, run, same
-
-PASSES: list[Pass] = [
-    RoundCorners(radius=1.0, everywhere=True),
-    RoundCorners(radius=0.3),
-    SmoothCorners(distance=1.0, everywhere=True),
-    SmoothCorners(),
-]
+from tests.passes.paths import Probe, Sketch, paths, run, same
 
 
-@pytest.mark.parametrize("p", PASSES, ids=repr)
-@settings(max_examples=12, deadline=None)
+@pytest.mark.parametrize(
+    "p", [RoundCorners(radius=0.3), SmoothCorners(), SmoothCorners(distance=2.0)], ids=repr
+)
+@settings(max_examples=12)
 @given(path=paths(most=12))
-def test_any_path_passes_and_chunks_do_not_matter(p: Pass, path: Toolpath) -> None:
+def test_chunks_do_not_matter_between_marks(p: Pass, path: Toolpath) -> None:
     whole, _ = run(p, path)
     assert np.array_equal(whole.end, path.end)
-    assert len(whole.events) == len(path.events)
-    for size in SIZES[:2]:
+    for size in (1, 7):
         assert same(run(p, path, size)[0], whole)
 
 

@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nccompile.errors import UsageError
-from nccompile.passes.base import Pass
 from nccompile.passes.compress import Compress
 from nccompile.passes.flatten import Flatten
 from nccompile.passes.limit_arc_feed import LimitArcFeed
@@ -20,30 +19,7 @@ from nccompile.passes.reverse import Reverse
 from nccompile.passes.split import Split, place_at
 from nccompile.passes.transform import Transform
 from nccompile.toolpath.columns import Kind, Mark, Plane, Toolpath
-from tests.passes.paths import SIZES, Sketch, paths, run, same
-
-SIMPLE: list[Pass] = [
-    Compress(),
-    Flatten(tolerance=0.01),
-    Flatten(length=2.0, arcs=True),
-    Flatten(angle=10.0, arcs=True),
-    LimitArcFeed(accel=100.0, jump=50.0, per_radius=20.0),
-    Transform(rotate=30.0, x=5.0, scale=2.0, mirror="y", cx=3.0),
-    Transform(roll=90.0),
-    Transform(roll=20.0, pitch=30.0, yaw=40.0, tolerance=0.01),
-    Reverse(),
-]
-
-
-@pytest.mark.parametrize("p", SIMPLE, ids=repr)
-@settings(max_examples=12, deadline=None)
-@given(path=paths(most=10))
-def test_any_path_passes_and_chunks_do_not_matter(p: Pass, path: Toolpath) -> None:
-    whole, report = run(p, path)
-    assert report.segments_in == len(path)
-    assert report.segments_out == len(whole)
-    for size in SIZES[:2]:
-        assert same(run(p, path, size)[0], whole)
+from tests.passes.paths import Sketch, paths, run, same
 
 
 def test_compress_merges_collinear_lines_of_equal_feed() -> None:

@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
+from nccompile.kernels.curve_parts import curve_piece
 from nccompile.kernels.curve_points import (
     ARC,
-    ELLIPSE,
     POLYNOMIAL,
     Floats,
     derivative3,
@@ -233,24 +233,4 @@ def cut_legs(
         if count:
             u0 = parameter_at(kind, p, nodes_u, nodes_s, count, float(s0[j]) / whole)
             u1 = parameter_at(kind, p, nodes_u, nodes_s, count, float(s1[j]) / whole)
-            _piece(kind, p, u0, u1, out_rows[j])
-
-
-@kernel
-def _piece(kind: int, p: Floats, u0: float, u1: float, out: Floats) -> None:
-    """Writes the curve row of the part u0..u1 of a curve."""
-    h = u1 - u0
-    for i in range(12):
-        out[i] = p[i]
-    if kind == ARC:
-        out[3] = p[3] + p[4] * u0
-        out[4] = p[4] * h
-    elif kind == ELLIPSE:
-        out[5] = p[5] + p[6] * u0
-        out[6] = p[6] * h
-    else:
-        for c in range(0, 12, 4):
-            out[c] = p[c] + u0 * (p[c + 1] + u0 * (p[c + 2] + u0 * p[c + 3]))
-            out[c + 1] = h * (p[c + 1] + u0 * (2.0 * p[c + 2] + u0 * 3.0 * p[c + 3]))
-            out[c + 2] = h * h * (p[c + 2] + 3.0 * p[c + 3] * u0)
-            out[c + 3] = h * h * h * p[c + 3]
+            curve_piece(kind, p, u0, u1, out_rows[j])

@@ -33,8 +33,8 @@ Diagnose: TypeAlias = Callable[[str, Severity, str, int, str], None]
 class Report:
     """What a pass did: segments in and out, largest deviation of its path from the one before [mm], time [s].
 
-    deviation: measured on samples of both paths by `passes.measure`, None if the pass moves the path on purpose
-    (a transform);  counts: what else is worth telling, by name.
+    deviation: measured on samples of both paths by `passes.measure`, None if nobody asked for it; where a pass moves
+    the path on purpose (a transform), from the path moved exactly;  counts: what else is worth telling, by name.
     """
 
     name: str
@@ -97,6 +97,8 @@ class Pass(ABC):
         """
         context = Context(Report(self.name)) if context is None else context
         report = context.report
+        if context.measure:
+            report.deviate(0.0)
         first = 0
         last: Toolpath | None = None
 
