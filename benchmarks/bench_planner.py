@@ -73,7 +73,7 @@ def _equal(path: Toolpath, planner: str, scalar: bool = False) -> PlanSettings:
 
 
 def _time(path: Toolpath, settings: PlanSettings) -> float:
-    return float(row_times(Toolpath.join(list(plan([path], settings))), 0.0, settings.smoothing).sum())
+    return float(row_times(Toolpath.join(list(plan([path], settings))), 0.0).sum())
 
 
 def _peers(name: str, path: Toolpath) -> None:

@@ -71,7 +71,6 @@ class JobTime:
     """Adds up the time of planned chunks on their way."""
 
     seconds: float = 0.0
-    smoothing: float = 0.0
     losses: Losses | None = None
     _velocity: float = 0.0
 
@@ -82,7 +81,7 @@ class JobTime:
                 if self.losses is not None:
                     self.losses.add(chunk, self._velocity)
                 assert chunk.v_end is not None
-                self.seconds += float(row_times(chunk, self._velocity, self.smoothing).sum())
+                self.seconds += float(row_times(chunk, self._velocity).sum())
                 self._velocity = float(chunk.v_end[-1])
             yield chunk
 
@@ -129,7 +128,6 @@ class Compilation:
             window=self.options.window,
             junction_deviation=self.options.junction_deviation,
         )
-        self.time.smoothing = settings.smoothing
         self.time.losses = Losses(settings) if self.options.losses else None
         planned = plan(self._checked(self._passed(program)), settings)
         if settings.planner == SOFTMOTION:
@@ -160,7 +158,6 @@ class Compilation:
             machine_sha256=machine_digest(self.options.machine),
             angle_tolerance=self.angle_tolerance,
             time_law=self.time_law,
-            smoothing=self.time.smoothing,
         )
 
     def _program(self) -> Decoded:

@@ -25,7 +25,7 @@ def losses(path: Toolpath, planner: str, size: int = 4096) -> tuple[Losses, floa
     report, before, total = Losses(options), 0.0, 0.0
     for chunk in plan(cut(path, size), options):
         report.add(chunk, before)
-        total += float(row_times(chunk, before, options.smoothing).sum())
+        total += float(row_times(chunk, before).sum())
         assert chunk.v_end is not None
         before = float(chunk.v_end[-1])
     return report, total

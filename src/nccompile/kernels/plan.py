@@ -6,16 +6,16 @@ q(s), s the path length; with v = ds/dt an axis has velocity q' v and accelerati
 
 from __future__ import annotations
 
-from math import exp, inf, log, sqrt
+from math import inf, sqrt
 
 import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.curves import max_curvature, tangent3
-from nccompile.kernels.timelaw import law_times
+from nccompile.kernels.timelaw import jerk_time, law_times
 
-__all__ = ["durations", "jerk_limits", "look_ahead", "row_limits"]
+__all__ = ["durations", "look_ahead", "row_limits", "third_order_durations"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -133,46 +133,6 @@ def row_limits(
 
 
 @kernel
-def jerk_limits(
-    kind: Kinds, start: Floats, target: Floats, curve: Ints, plane: Kinds, parameters: Floats, length: Floats,
-    profile: npt.NDArray[np.uint16], j_axis: Floats, accel: Floats, decel: Floats, v_limit: Floats,
-) -> None:  # fmt: skip
-    """Lowers v_limit so that following curves and S-profiles leaves room for the jerk along the path.
-
-    With v, a, j along the path and curvature c the jerk of a curve is (j - c² v³) along it and 3 c v a across it.
-    j has 0.6 of the axis's jerk J, so c² v³ <= 0.2 J and 3 c v a <= 0.6 J keep 0.8² + 0.6² = 1.  The change of
-    the curvature along ellipses and splines is not counted.  An S-profile over D in length L has third and
-    second derivatives up to 60 D / L³ and 5.8 D / L², which get a quarter of J each.
-    """
-    axes = target.shape[1]
-    for i in range(len(kind)):
-        if kind[i] >= _SET_POSITION or length[i] <= 0.0:
-            continue
-        ramp = max(accel[i], decel[i])
-        bits = int(profile[i])
-        run = float(length[i])
-        for a in range(axes):
-            size = abs(target[i, a] - start[i, a]) / run
-            if (bits >> a) & 1 and size > 0.0 and j_axis[a] < inf:
-                v_limit[i] = min(v_limit[i], exp(log(j_axis[a] * run * run / (240.0 * size)) / 3.0))
-                v_limit[i] = min(v_limit[i], j_axis[a] * run / (70.0 * size * ramp))
-        row = int(curve[i])
-        if row < 0:
-            continue
-        at = int(plane[row])
-        jerk = min(j_axis[0], j_axis[1], j_axis[2])
-        if at != _SPACE:
-            first = 2 if at == 1 else at // 2
-            second = 0 if at == 1 else at // 2 + 1
-            jerk = min(j_axis[first], j_axis[second])
-        bend = max_curvature(int(kind[i]), parameters[row])
-        if 0.0 < bend < inf and jerk < inf:
-            v_limit[i] = min(
-                v_limit[i], exp(log(0.2 * jerk / (bend * bend)) / 3.0), 0.2 * jerk / (bend * ramp)
-            )
-
-
-@kernel
 def _rest_within(length: Floats, decel: Floats, first: int, last: int) -> float:
     """v² from which rows first..last brake to rest: the sum of 2 d L."""
     total = 0.0
@@ -247,3 +207,17 @@ def durations(
             out[j] = t1 + t2 + t3
         else:
             v = float(v_end[j])
+
+
+@kernel
+def third_order_durations(
+    kind: Kinds, length: Floats, v_end: Floats, a_end: Floats, v_before: float, out: Floats
+) -> None:
+    """Writes the time [s] of every row of a third-order plan that starts without acceleration; 0 without length."""
+    v, a = v_before, 0.0
+    for j in range(len(kind)):
+        out[j] = 0.0
+        v1, a1 = float(v_end[j]), float(a_end[j])
+        if length[j] > 0.0 and kind[j] < _SET_POSITION:
+            out[j] = jerk_time(length[j], v, v1, a, a1)
+        v, a = v1, a1

@@ -184,7 +184,8 @@ class Toolpath:
     in a planned path `feed`, `accel` and `decel` hold the values in force, all > 0 where the segment moves, and
     the segment runs at min(override * feed, v_limit);
     a_end [mm/s²], jerk [mm/s³]: f8 (n,), both or none: path acceleration at the end of a segment that is run with a
-    constant jerk, and the greatest path jerk allowed on it (> 0 where the segment moves);
+    constant jerk, 0 where the path stops, and the greatest path jerk allowed on it (> 0 where the segment moves);
+    segments without length hand v_end and a_end of the one before them on;
     first: index of row 0 in the whole path;  names: what `Events.o` points to.
     """
 

@@ -60,6 +60,9 @@ _VELOCITY_RATIO = 1e-9
 _LAW_RATIO = 1e-6
 """The same for accelerations, jerks and velocities of a third-order plan."""
 
+_PLACE = 1e-12
+"""Rounding of coordinates in the length of a segment [mm]: what a jerk is told by in segments that are as short."""
+
 _CURVED = (Kind.ARC, Kind.ELLIPSE, Kind.POLYNOMIAL)
 _WAITS = (Kind.DWELL, Kind.M_FUNCTION)
 
@@ -336,7 +339,7 @@ def _check_third_order(chunk: Toolpath, start: Floats, known: Flags) -> None:
     a1, jerk, v, moving = chunk.a_end, chunk.jerk, chunk.v_end, chunk.length > 0.0
     _forbid(chunk, ~np.isfinite(a1), "a_end is not finite")
     _forbid(chunk, moving & ~((jerk > 0.0) & np.isfinite(jerk)), "planned jerk is not above 0")
-    _forbid(chunk, ~moving & (a1 != 0.0), "an acceleration where the path stands")
+    _forbid(chunk, (v == 0.0) & (a1 != 0.0), "an acceleration where the path stands")
     room = 1.0 + _LAW_RATIO
     _forbid(
         chunk, moving & ((a1 > chunk.accel * room) | (-a1 > chunk.decel * room)), "a_end beyond the limits"
@@ -352,4 +355,7 @@ def _check_third_order(chunk: Toolpath, start: Floats, known: Flags) -> None:
     _forbid(chunk, known & (time <= 0.0), "the segment cannot be run with a constant jerk")
     off = np.abs(start + 0.5 * (a0 + a1) * time - v)
     _forbid(chunk, known & (off > _LAW_RATIO * np.maximum(v, start)), "v_end is not where the jerk leads to")
-    _forbid(chunk, known & (np.abs(a1 - a0) > jerk * time * room), "a jerk beyond the limit")
+    least = np.divide(
+        _PLACE, np.maximum(v, start), out=np.full_like(v, np.inf), where=np.maximum(v, start) > 0.0
+    )
+    _forbid(chunk, known & (np.abs(a1 - a0) > jerk * (time * room + least)), "a jerk beyond the limit")

@@ -10,7 +10,7 @@ from nccompile.kernels import plan as kernels
 from nccompile.kernels.corners import junctions
 from nccompile.kernels.timelaw import peak_factor
 from nccompile.kernels.turns import turn_limits
-from nccompile.passes.velocity.settings import JERK, SOFTMOTION, TIME_OPTIMAL, PlanSettings
+from nccompile.passes.velocity.settings import SOFTMOTION, TIME_OPTIMAL, PlanSettings
 from nccompile.toolpath.columns import Floats, Toolpath
 
 __all__ = ["creep", "limited"]
@@ -56,11 +56,6 @@ def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
         creep(settings), peak_factor(settings.law), straight,
         feed, accel, decel, v_limit, t_start, t_end,
     )  # fmt: skip
-    if settings.planner == JERK and axis.jerk is not None:
-        kernels.jerk_limits(
-            chunk.kind, chunk.starts(), chunk.target, chunk.curve, chunk.curves.plane, chunk.curves.parameters,
-            chunk.length, chunk.profile, axis.jerk, accel, decel, v_limit,
-        )  # fmt: skip
     v_limit = np.where(np.isfinite(v_limit), v_limit, np.maximum(feed, _UNLIMITED))
     chord = 2.0 * sin(0.5 * settings.angle_tolerance)
     known = junctions(

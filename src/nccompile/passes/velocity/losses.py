@@ -1,10 +1,9 @@
 """Where the time of a job goes: what it would take at the programmed feed, and what limits cost on top.
 
-    job time = time at feed + lost to limits + lost to corners + smoothing + waits
+    job time = time at feed + lost to limits + lost to corners + waits
 
     limits     a segment cannot run at its feed: an axis's velocity, or the bend of a curve
     corners    ramps up and down: stops, sharp bends, changes of the feed, short segments between them
-    smoothing  the mean of the planner `jerk` arrives later wherever the path stops
     waits      dwells
 
 Rapids count with the velocity that they are given.  All numbers are seconds at override 1.
@@ -44,14 +43,13 @@ class Place:
 class Losses:
     """Adds up planned chunks on their way.
 
-    at_feed, corners, smoothing, waits [s];  limits: seconds by axis letter or `CURVES`;
+    at_feed, corners, waits [s];  limits: seconds by axis letter or `CURVES`;
     places: the slowest ones.
     """
 
     settings: PlanSettings
     at_feed: float = 0.0
     corners: float = 0.0
-    smoothing: float = 0.0
     waits: float = 0.0
     limits: dict[str, float] = field(default_factory=dict)
     places: list[Place] = field(default_factory=list)
@@ -59,7 +57,7 @@ class Losses:
     @property
     def job_time(self) -> float:
         """All of it [s]."""
-        return self.at_feed + self.corners + self.smoothing + self.waits + sum(self.limits.values())
+        return self.at_feed + self.corners + self.waits + sum(self.limits.values())
 
     def add(self, chunk: Toolpath, v_before: float) -> None:
         """Counts a planned chunk; v_before: the end velocity of the one before it [mm/s]."""
@@ -76,7 +74,6 @@ class Losses:
         by_corner = np.maximum(time[moving] - length / top, 0.0)
         self.at_feed += float((length / feed).sum())
         self.corners += float(by_corner.sum())
-        self.smoothing += self.settings.smoothing * int((chunk.v_end[moving] == 0.0).sum())
         names = np.array([*chunk.axes, CURVES])
         axis = self._slowest_axis(chunk)[moving]
         for at in np.unique(axis[by_limit > _LEAST]):
@@ -112,7 +109,6 @@ class Losses:
             "time_at_feed": self.at_feed,
             "lost_to_corners": self.corners,
             "lost_to_limits": dict(sorted(self.limits.items())),
-            "smoothing": self.smoothing,
             "waits": self.waits,
             "slowest": [{"line": p.line, "lost": p.lost, "cause": p.cause} for p in self.places],
         }

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from nccompile.kernels.curves import NODES
-from nccompile.kernels.erosion import cut_rows
+from nccompile.kernels.cut_rows import cut_rows
 from nccompile.kernels.interpolator import CONTINUES
 from nccompile.toolpath.columns import CURVE_PARAMETERS, Curves, EventKind, Events, Floats, Ints, Toolpath
 from nccompile.toolpath.lengths import path_lengths

@@ -30,10 +30,10 @@ import numpy as np
 
 from nccompile.kernels import plan as kernels
 from nccompile.passes.velocity.cuts import cut_at_bends
+from nccompile.passes.velocity.jerk import smoothest
 from nccompile.passes.velocity.limits import limited
 from nccompile.passes.velocity.optimal import fastest
 from nccompile.passes.velocity.settings import JERK, TIME_OPTIMAL, PlanSettings
-from nccompile.passes.velocity.smooth import smoothable
 from nccompile.toolpath.columns import EventKind, Floats, Kind, Toolpath
 
 __all__ = ["Planner", "plan", "row_times"]
@@ -44,8 +44,11 @@ def plan(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpat
     if settings.planner == TIME_OPTIMAL:
         yield from fastest(chunks, settings)
         return
+    if settings.planner == JERK:
+        yield from smoothest(chunks, settings)
+        return
     planner = Planner(settings)
-    for chunk in smoothable(chunks, settings) if settings.planner == JERK else chunks:
+    for chunk in chunks:
         yield from planner.feed(chunk)
     yield from planner.finish()
 
@@ -108,27 +111,29 @@ def plan_window(
     return window.replace(v_end=v_end), settled
 
 
-def row_times(chunk: Toolpath, v_before: float, smoothing: float = 0.0) -> Floats:
+def row_times(chunk: Toolpath, v_before: float) -> Floats:
     """Shape (n,): the time of every segment at override 1 [s]; M functions count 0, dwells their seconds.
 
-    v_before: velocity at the start of the chunk [mm/s], the end velocity of the chunk before it; smoothing [s]:
-    the mean arrives so much later wherever the path stops.
+    v_before: velocity at the start of the chunk [mm/s], the end velocity of the chunk before it; a third-order
+    plan has no acceleration there.
     """
     assert chunk.v_limit is not None
     assert chunk.v_end is not None
     out = np.empty(len(chunk))
-    kernels.durations(
-        chunk.kind,
-        chunk.length,
-        chunk.feed,
-        chunk.v_limit,
-        chunk.v_end,
-        chunk.accel,
-        chunk.decel,
-        v_before,
-        out,
-    )
-    out[(chunk.length > 0.0) & (chunk.v_end == 0.0)] += smoothing
+    if chunk.a_end is not None:
+        kernels.third_order_durations(chunk.kind, chunk.length, chunk.v_end, chunk.a_end, v_before, out)
+    else:
+        kernels.durations(
+            chunk.kind,
+            chunk.length,
+            chunk.feed,
+            chunk.v_limit,
+            chunk.v_end,
+            chunk.accel,
+            chunk.decel,
+            v_before,
+            out,
+        )
     e = chunk.events
     dwell = (e.kind == EventKind.DWELL) & (chunk.kind[e.segment] == Kind.DWELL)
     out[e.segment[dwell]] = e.k[dwell]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import ceil, inf, pi, radians
+from math import inf, pi, radians
 
 import numpy as np
 
@@ -66,20 +66,6 @@ class PlanSettings:
         return NO_DEVIATION if self.junction_deviation is None else self.junction_rule
 
     @property
-    def smoothing(self) -> float:
-        """Duration T of the mean that the planner `jerk` runs [s], a multiple of the cycle; else 0.
-
-        The acceleration of an axis lies in -A..A, so the jerk of the mean is at most 2 A / T whatever the
-        acceleration does, also under override and stops:  T = max 2 A / J.
-        """
-        jerk = self.limits.jerk
-        if self.planner != JERK or jerk is None:
-            return 0.0
-        bound = np.isfinite(jerk) & np.isfinite(self.limits.acceleration)
-        times = 2.0 * self.limits.acceleration[bound] / jerk[bound]
-        return ceil(float(times.max(initial=0.0)) / self.cycle - 1e-9) * self.cycle
-
-    @property
     def limits_turns(self) -> bool:
         """Whether the machine has limits of turns beside those of its axes."""
         return self.corner_angle < pi or self.centripetal < inf or self.centripetal_jump < inf
@@ -114,7 +100,7 @@ class PlanSettings:
             decel=path.deceleration,
             angle_tolerance=radians(angle_deg),
             cycle=seconds_from_us(machine.cycle_us),
-            law=TRAPEZOID if planner == TIME_OPTIMAL else LAWS[time_law or path.time_law],
+            law=TRAPEZOID if planner in (JERK, TIME_OPTIMAL) else LAWS[time_law or path.time_law],
             planner=planner or LOOK_AHEAD,
             window=window,
             junction_deviation=junction_deviation,
