@@ -1,420 +1,453 @@
-"""A run of small lines becomes a C2 cubic spline: the kernel of the pass `fit-splines`.
+"""A run of small lines becomes a C2 cubic spline with few pieces: the kernel of the pass `fit-splines`.
 
-    S(tau) = sum c(i) B(i, tau)      cubic B-splines on the knots t(0) < t(1) < ... < t(K), tau: way along the chords
+     |   .-●-.       |      ●-.       Least squares by distances across the curve (kernels/spline_solve), in turns
+     | ●'     '●-.   |  .-●'          with the knots free to move and with the knots held; the vertices look for their
+     |/           '●-|-'              feet on the spline in between, so neither knots nor parameters are given.
+     t(j)          t(j+1)
 
-     |   .-●-.       |      ●-.       Least squares for the vertices, weighted with the way they stand for; both
-     | ●'     '●-.   |  .-●'          ends exact.  With h the length of a span, its error is about C h⁴, so from
-     |/           '●-|-'              the error e(j) measured on each span
-     t(j)          t(j+1)                 N = sum (e(j) / tolerance)^(1/4)
-                                      spans are needed, at places where they all have the same error: knots
-    are spread by that density and the spline is solved again, until the tolerance holds, then with fewer.
+Where a span is too far off (kernels/spline_errors), a knot is put into its middle and the spans around it are
+solved again, while the rest of the spline stands still.  Such a window:
 
-The chords of a run lie inside the curve that they stand for, so the vertices are moved inwards by half the sag
-before the fit: the spline then runs in the middle of the band.  Errors are measured from the chords as they are:
-at every vertex (after one step to the nearest place), at the middle of every chord and with a bound between
-them, so they bound the distance of chord and spline both ways.
+     a   |   |   | control points and knots are free |   |   |   b     three control points on each side are held,
+     ────┴───┴───┴───────────────────────────────────┴───┴───┴────     so the joints to the rest stay C2
 
-Source:   C. de Boor, A Practical Guide to Splines, 1978, chapters X, XII (knots by equal error), XIV.
+How far the least squares are believed depends on the errors: along the curve, errors count with
+`_ALONG + _DAMP error / span`, and knots are held back in the same manner (Levenberg-Marquardt).
+
+Source:   W. Wang, H. Pottmann, Y. Liu, Fitting B-spline curves by squared distance minimization, 2006;
+          C. de Boor, A Practical Guide to Splines, 1978, chapters X, XIV; windows and moving knots: own derivation.
 """
 
-from math import sqrt
+from math import ceil, inf
 
 import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
+from nccompile.kernels.spline_basis import pad_knots, span_basis, span_powers
+from nccompile.kernels.spline_errors import axes_errors, chord_errors
+from nccompile.kernels.spline_samples import count_samples, fill_samples
+from nccompile.kernels.spline_solve import assemble, fix, hold_knot, lead, solve
 
-__all__ = ["fit_spline"]
+__all__ = ["FREE", "HELD", "LED", "fit_spline"]
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
 
-_ROUNDS = 12
-_FLOOR = 1e-3  # part of the tolerance below which an error says nothing of the span it needs
-_SMOOTH = 1e-10  # weight of second differences of the coefficients: a span without vertices is still defined
+FREE, LED, HELD = 0, 1, 2
+"""What is known at an end of a run besides the position: nothing, the direction, or first and second derivative."""
 
-
-@kernel
-def _assemble(points: Floats, tau: Floats, t: Floats, spans: int, band: Floats, right: Floats) -> None:
-    """Normal equations of the least squares; t: padded knots, Shape (spans + 7,); band: upper, Shape (N, 4)."""
-    n = len(tau) - 1
-    count = spans + 3
-    for i in range(count):
-        for d in range(4):
-            band[i, d] = 0.0
-        for c in range(3):
-            right[i, c] = 0.0
-    basis = np.zeros(4)
-    span = 0
-    for i in range(n + 1):
-        x = float(tau[i])
-        while span < spans - 1 and x >= t[span + 4]:
-            span += 1
-        # Cox-de Boor on the four B-splines that live on this span.
-        basis[0] = 1.0
-        for degree in range(1, 4):
-            saved = 0.0
-            for r in range(degree):
-                high = float(t[span + 4 + r])
-                low = float(t[span + 4 + r - degree])
-                part = float(basis[r]) / (high - low)
-                basis[r] = saved + (high - x) * part
-                saved = (x - low) * part
-            basis[degree] = saved
-        before = float(tau[i - 1]) if i > 0 else x
-        after = float(tau[i + 1]) if i < n else x
-        weight = after - before
-        for a in range(4):
-            wa = weight * float(basis[a])
-            for b in range(a, 4):
-                band[span + a, b - a] += wa * float(basis[b])
-            for c in range(3):
-                right[span + a, c] += wa * float(points[i, c])
-    mean = 0.0
-    for i in range(count):
-        mean += float(band[i, 0])
-    weight = _SMOOTH * mean / count
-    for i in range(count - 2):
-        band[i, 0] += weight
-        band[i, 1] -= 2.0 * weight
-        band[i, 2] += weight
-        band[i + 1, 0] += 4.0 * weight
-        band[i + 1, 1] -= 2.0 * weight
-        band[i + 2, 0] += weight
+_FIRST = 0.65  # part of the spans that a first guess asks for
+_ORDER = 0.2  # errors fall with the fifth power of the span
+_TURNS = 4  # of knots moving and knots held, for one window
+_CYCLES = 30  # of inserting knots
+_ROUGH = 200.0  # times the tolerance: a spline so far off tells nothing of where its knots should be
+_FRESH = 0.1  # weight of errors along the curve when knots are new,
+_ALONG = 0.01  # once they are not, knots held,
+_ALONG_MOVING = 0.001  # and knots moving
+_DAMP = 1.0
+_STIFF = 6.0  # squared tolerances that moving a knot by its span counts as,
+_STIFF_DAMP = 0.3  # and squared errors
+_REACH = 0.25  # part of a span that a knot moves by at most
+_CROWD = 0.3  # a span is at least this part of its shorter neighbour
+_AROUND = 4  # spans around a new knot that are solved again
+_NEAR = 2  # spans around a new knot that get no other one, 1 where the error is
+_FAR = 5.0  # times the tolerance
+_ENOUGH = 20.0  # samples a span of the first guess that the least squares look at
+_SAMPLES = 25.0  # samples a span of the first guess, at least; four times as many if that fails
 
 
 @kernel
-def _solve(points: Floats, spans: int, band: Floats, right: Floats) -> bool:
-    """Coefficients into `right`; the first and last are the end vertices.  Banded Cholesky, in place."""
-    count = spans + 3
-    last = len(points) - 1
-    for end in range(2):
-        at = 0 if end == 0 else count - 1
-        for d in range(1, 4):
-            other = at + d if end == 0 else at - d
-            if 0 <= other < count:
-                value = float(band[at, d]) if end == 0 else float(band[other, d])
-                for c in range(3):
-                    right[other, c] -= value * float(points[0 if end == 0 else last, c])
-                if end == 0:
-                    band[at, d] = 0.0
-                else:
-                    band[other, d] = 0.0
-        band[at, 0] = 1.0
-        for c in range(3):
-            right[at, c] = points[0 if end == 0 else last, c]
-    for i in range(count):
-        pivot = float(band[i, 0])
-        for k in range(1, 4):
-            if i - k >= 0:
-                pivot -= float(band[i - k, k]) * float(band[i - k, k])
-        if pivot <= 0.0:
-            return False
-        root = sqrt(pivot)
-        band[i, 0] = root
-        for d in range(1, 4):
-            if i + d < count:
-                value = float(band[i, d])
-                for k in range(1, 4 - d):
-                    if i - k >= 0:
-                        value -= float(band[i - k, k]) * float(band[i - k, k + d])
-                band[i, d] = value / root
-    for c in range(3):
-        for i in range(count):
-            value = float(right[i, c])
-            for k in range(1, 4):
-                if i - k >= 0:
-                    value -= float(band[i - k, k]) * float(right[i - k, c])
-            right[i, c] = value / float(band[i, 0])
-        for i in range(count - 1, -1, -1):
-            value = float(right[i, c])
-            for k in range(1, 4):
-                if i + k < count:
-                    value -= float(band[i, k]) * float(right[i + k, c])
-            right[i, c] = value / float(band[i, 0])
+def _held_place(row: Floats, origin: float, t: Floats, first: int, place: Floats) -> None:
+    """Fills the control point of the knots t(first..first + 2) of the cubic with powers `row` of (u - origin)."""
+    v1 = float(t[first]) - origin
+    v2 = float(t[first + 1]) - origin
+    v3 = float(t[first + 2]) - origin
+    for c in range(len(place)):
+        place[c] = (
+            float(row[4 * c])
+            + float(row[4 * c + 1]) * (v1 + v2 + v3) / 3.0
+            + float(row[4 * c + 2]) * (v1 * v2 + v1 * v3 + v2 * v3) / 3.0
+            + float(row[4 * c + 3]) * v1 * v2 * v3
+        )
+
+
+@kernel
+def _solve_window(
+    data: Floats, u: Floats, weight: Floats, tangent: Floats, t: Floats, spans: int, rows: Floats, window: Ints,
+    along: Floats, stiff: Floats, kinds: Ints, states: Floats,
+) -> bool:  # fmt: skip
+    """Solves spans anew: their powers in `rows`, or their knots in `t`; false if it cannot.
+
+    window: Shape (4,): first and last span, every how manyth sample counts, whether it is for the knots (0, 1).
+    """
+    a = int(window[0])
+    b = int(window[1])
+    step = int(window[2])
+    moving = window[3] > 0
+    dims = data.shape[1]
+    block = dims + 1
+    m = b - a + 1
+    local = t[a : b + 8]
+    low = int(np.searchsorted(u, local[3]))
+    high = int(np.searchsorted(u, local[m + 3], "right"))
+    basis = np.zeros((m, 7, 4))
+    span_basis(local, m, basis)
+    size = (m + 3) * block
+    band = np.zeros((size, 4 * block))
+    right = np.zeros(size)
+    assemble(
+        data[low:high], u[low:high], weight[low:high], tangent[low:high], local, m, basis, along[a : b + 1],
+        rows[a : b + 1], stiff[a : b + 1], moving, (step - low % step) % step, step, band, right,
+    )  # fmt: skip
+    place = np.zeros(dims)
+    for side in range(2):
+        at_end = a == 0 if side == 0 else b == spans - 1
+        kind = int(kinds[side]) if at_end else HELD
+        if kind == HELD:
+            if at_end:
+                row = states[side]
+                origin = float(local[3] if side == 0 else local[m + 3])
+            else:
+                row = rows[a if side == 0 else b]
+                origin = float(local[3] if side == 0 else local[m + 2])
+            for k in range(3):
+                point = k if side == 0 else m + k
+                _held_place(row, origin, local, point + 1, place)
+                fix(band, right, m, point, place)
+            if moving:
+                for k in range(1, 3):
+                    knot = k if side == 0 else m - k
+                    if 0 < knot < m:
+                        hold_knot(band, right, m, dims, knot)
+        else:
+            for c in range(dims):
+                place[c] = states[side, 4 * c]
+            if kind == LED:
+                direction = np.zeros(dims)
+                for c in range(dims):
+                    direction[c] = states[side, 4 * c + 1]
+                lead(band, right, 1 if side == 0 else m + 1, place, direction)
+            fix(band, right, m, 0 if side == 0 else m + 2, place)
+    if not solve(band, right, size):
+        return False
+    if moving:
+        _move_knots(local, m, block, right)
+    else:
+        span_powers(basis, m, dims, right, block, rows[a : b + 1])
     return True
 
 
 @kernel
-def _pieces(t: Floats, spans: int, control: Floats, rows: Floats) -> None:
-    """Each span as powers of tau - t(j): rows, Shape (spans, 12), four numbers a coordinate."""
-    for j in range(spans):
-        u = float(t[j + 3])
-        h = float(t[j + 4]) - u
-        for c in range(3):
-            c0 = float(control[j, c])
-            c1 = float(control[j + 1, c])
-            c2 = float(control[j + 2, c])
-            c3 = float(control[j + 3, c])
-            e0 = 3.0 * (c1 - c0) / float(t[j + 4] - t[j + 1])
-            e1 = 3.0 * (c2 - c1) / float(t[j + 5] - t[j + 2])
-            e2 = 3.0 * (c3 - c2) / float(t[j + 6] - t[j + 3])
-            f0 = 2.0 * (e1 - e0) / float(t[j + 4] - t[j + 2])
-            f1 = 2.0 * (e2 - e1) / float(t[j + 5] - t[j + 3])
-            share = float(u - t[j + 2]) / float(t[j + 4] - t[j + 2])
-            a = c0 + float(u - t[j + 1]) / float(t[j + 4] - t[j + 1]) * (c1 - c0)
-            b = c1 + float(u - t[j + 2]) / float(t[j + 5] - t[j + 2]) * (c2 - c1)
-            rows[j, 4 * c] = a + share * (b - a)
-            rows[j, 4 * c + 1] = e0 + share * (e1 - e0)
-            rows[j, 4 * c + 2] = 0.5 * f0
-            rows[j, 4 * c + 3] = (f1 - f0) / (6.0 * h)
+def _move_knots(t: Floats, spans: int, block: int, right: Floats) -> None:
+    """Moves the knots of padded t by their unknowns, each by a part of a span at most; none crowds others."""
+    wanted = np.zeros(spans + 1)
+    for k in range(spans + 1):
+        wanted[k] = t[k + 3]
+        if 0 < k < spans:
+            most = _REACH * min(float(t[k + 3] - t[k + 2]), float(t[k + 4] - t[k + 3]))
+            wanted[k] += min(max(-float(right[(k + 2) * block - 1]), -most), most)
+    for _ in range(3):
+        crowded = False
+        for k in range(spans):
+            shorter = inf
+            if k > 0:
+                shorter = float(wanted[k] - wanted[k - 1])
+            if k + 1 < spans:
+                shorter = min(shorter, float(wanted[k + 2] - wanted[k + 1]))
+            if float(wanted[k + 1] - wanted[k]) < _CROWD * shorter < inf:
+                wanted[k] = t[k + 3]
+                wanted[k + 1] = t[k + 4]
+                crowded = True
+        if not crowded:
+            break
+    for k in range(1, spans):
+        t[k + 3] = wanted[k]
 
 
 @kernel
-def _off(points: Floats, i: int, c: int, rows: Floats, j: int, v: float) -> tuple[float, float]:
-    """Coordinate c of (middle of the chord that ends in vertex i) - S, and of S', at v behind the start of span j."""
-    p1 = float(rows[j, 4 * c + 1])
-    p2 = float(rows[j, 4 * c + 2])
-    p3 = float(rows[j, 4 * c + 3])
-    middle = 0.5 * (float(points[i - 1, c]) + float(points[i, c]))
-    place = float(rows[j, 4 * c]) + v * (p1 + v * (p2 + v * p3))
-    return middle - place, p1 + v * (2.0 * p2 + 3.0 * v * p3)
-
-
-@kernel
-def _errors(
-    points: Floats, tau: Floats, t: Floats, spans: int, rows: Floats, errors: Floats, needs: Floats
+def _measure(
+    places: Floats, data: Floats, u: Floats, tangent: Floats, t: Floats, spans: int, rows: Floats, errors: Floats,
+    a: int, b: int,
 ) -> float:  # fmt: skip
-    """Fills the error bound of each span [mm] (see the module) and how many spans it should be.
+    """The greatest error of the spans a..b; those beside them that share a chord with them are looked at too."""
+    low = max(int(np.searchsorted(u, t[a + 3])) - 1, 0)
+    high = min(int(np.searchsorted(u, t[b + 4], "right")), len(u) - 1)
+    while a > 0 and t[a + 3] > u[low]:
+        a -= 1
+    while b < spans - 1 and t[b + 4] < u[high]:
+        b += 1
+    return chord_errors(
+        places[low : high + 1], data[low : high + 1], t[a : b + 8], b - a + 1, rows[a : b + 1], u[low : high + 1],
+        tangent[low : high + 1], errors[a : b + 1], True,
+    )  # fmt: skip
 
-    Between the vertices of a chord, at e0 and e1 off the spline, its middle is (e0 + e1) / 2 + |chord|² / 8 S''
-    off; between these three places a quarter of the sag may come on top.  Returns the greatest error.
+
+@kernel
+def _damp(
+    t: Floats, spans: int, errors: Floats, a: int, b: int, tolerance: float, least: float, along: Floats,
+    stiff: Floats,
+) -> None:  # fmt: skip
+    """Fills how errors along the curve and moves of knots are weighted on the spans a..b, by the errors around."""
+    for j in range(a, b + 1):
+        error = float(errors[j])
+        if j > 0:
+            error = max(error, float(errors[j - 1]))
+        if j + 1 < spans:
+            error = max(error, float(errors[j + 1]))
+        along[j] = min(1.0, least + _DAMP * error / float(t[j + 4] - t[j + 3]))
+        stiff[j] = _STIFF * tolerance * tolerance + _STIFF_DAMP * error * error
+
+
+@kernel
+def _relax(
+    places: Floats, data: Floats, u: Floats, weight: Floats, tangent: Floats, t: Floats, spans: int, rows: Floats,
+    errors: Floats, a: int, b: int, tolerance: float, careful: bool, step: int, kinds: Ints, states: Floats,
+) -> bool:  # fmt: skip
+    """Fits the spans a..b with their new knots; false if it cannot.  `careful`: knots stay, errors count all ways."""
+    along = np.zeros(spans)
+    stiff = np.zeros(spans)
+    window = np.array([a, b, step, 0])
+    for j in range(a, b + 1):
+        along[j] = 1.0 if careful else _FRESH
+    if not _solve_window(data, u, weight, tangent, t, spans, rows, window, along, stiff, kinds, states):
+        return False
+    worst = _measure(places, data, u, tangent, t, spans, rows, errors, a, b)
+    for turn in range(_TURNS):
+        if worst <= tolerance:
+            break
+        rough = careful or worst > _ROUGH * tolerance
+        if not rough:
+            _damp(t, spans, errors, a, b, tolerance, _ALONG_MOVING, along, stiff)
+            window[3] = 1
+            if not _solve_window(
+                data, u, weight, tangent, t, spans, rows, window, along, stiff, kinds, states
+            ):
+                return False
+            window[3] = 0
+        if not careful:
+            _damp(t, spans, errors, a, b, tolerance, _ALONG, along, stiff)
+        if not _solve_window(data, u, weight, tangent, t, spans, rows, window, along, stiff, kinds, states):
+            return False
+        worst = _measure(places, data, u, tangent, t, spans, rows, errors, a, b)
+        if rough and turn > 0:
+            break
+    return worst < inf
+
+
+@kernel
+def _insert(
+    t: Floats,
+    spans: int,
+    rows: Floats,
+    errors: Floats,
+    tolerance: float,
+    most: int,
+    fresh: npt.NDArray[np.bool_],
+) -> int:
+    """Puts knots into the middle of the worst spans, each some spans from the next; returns the new number of spans.
+
+    fresh: which spans are new, out.  Powers and errors of cut spans follow; 0 if there would be more than `most`.
     """
-    last = len(tau) - 1
-    for j in range(spans):
-        errors[j] = 0.0
-        needs[j] = 0.0
-    worst = 0.0
-    span = 0
-    before = 0.0
-    bend_before = 0.0
-    vx = vy = vz = 0.0
-    ex = ey = ez = 0.0
-    wx = wy = wz = 0.0
-    bx = by = bz = 0.0
-    for i in range(last + 1):
-        x = float(tau[i])
-        while span < spans - 1 and x > t[span + 4]:
-            span += 1
-        v = x - float(t[span + 3])
-        p1 = float(rows[span, 1])
-        p2 = float(rows[span, 2])
-        p3 = float(rows[span, 3])
-        ex = float(points[i, 0]) - (float(rows[span, 0]) + v * (p1 + v * (p2 + v * p3)))
-        sx = p1 + v * (2.0 * p2 + 3.0 * v * p3)
-        bx = 2.0 * p2 + 6.0 * v * p3
-        p1 = float(rows[span, 5])
-        p2 = float(rows[span, 6])
-        p3 = float(rows[span, 7])
-        ey = float(points[i, 1]) - (float(rows[span, 4]) + v * (p1 + v * (p2 + v * p3)))
-        sy = p1 + v * (2.0 * p2 + 3.0 * v * p3)
-        by = 2.0 * p2 + 6.0 * v * p3
-        p1 = float(rows[span, 9])
-        p2 = float(rows[span, 10])
-        p3 = float(rows[span, 11])
-        ez = float(points[i, 2]) - (float(rows[span, 8]) + v * (p1 + v * (p2 + v * p3)))
-        sz = p1 + v * (2.0 * p2 + 3.0 * v * p3)
-        bz = 2.0 * p2 + 6.0 * v * p3
-        ss = sx * sx + sy * sy + sz * sz
-        bend = sqrt(bx * bx + by * by + bz * bz)
-        step = 0.0
-        if ss > 0.25 and 0 < i < last:
-            step = (ex * sx + ey * sy + ez * sz) / ss
-            ex -= step * sx
-            ey -= step * sy
-            ez -= step * sz
-        off = sqrt(ex * ex + ey * ey + ez * ez) + 0.5 * bend * step * step
-        if i > 0:
-            size = x - float(tau[i - 1])
-            sag = 0.0625 * size * size  # of the mean of both second derivatives
-            mx = 0.5 * (ex + vx) + sag * (bx + wx)
-            my = 0.5 * (ey + vy) + sag * (by + wy)
-            mz = 0.5 * (ez + vz) + sag * (bz + wz)
-            most_bend = max(bend, bend_before)
-            if t[span + 3] > tau[i - 1]:
-                # A joint inside the chord: S'' has a corner there, so the middle is looked up.
-                j = span
-                while t[j + 3] > tau[i - 1]:
-                    kx = float(rows[j, 2])
-                    ky = float(rows[j, 6])
-                    kz = float(rows[j, 10])
-                    most_bend = max(most_bend, 2.0 * sqrt(kx * kx + ky * ky + kz * kz))
-                    j -= 1
-                v = x - 0.5 * size
-                j = span
-                while t[j + 3] > v:
-                    j -= 1
-                v -= float(t[j + 3])
-                mx, nx = _off(points, i, 0, rows, j, v)
-                my, ny = _off(points, i, 1, rows, j, v)
-                mz, nz = _off(points, i, 2, rows, j, v)
-                along = (mx * nx + my * ny + mz * nz) / max(nx * nx + ny * ny + nz * nz, 0.25)
-                mx -= along * nx
-                my -= along * ny
-                mz -= along * nz
-            middle = sqrt(mx * mx + my * my + mz * mz)
-            bump = 0.5 * sag * most_bend  # of each half
-            bound = max(off, before, middle)
-            for half in range(2):
-                ax = ex - mx if half == 0 else vx - mx
-                ay = ey - my if half == 0 else vy - my
-                az = ez - mz if half == 0 else vz - mz
-                apart = sqrt(ax * ax + ay * ay + az * az)
-                if 4.0 * bump > apart:
-                    most = max(middle, off if half == 0 else before)
-                    bound = max(bound, most + bump + apart * apart / (16.0 * bump) - 0.5 * apart)
-            worst = max(worst, bound)
-            j = span
-            while True:
-                errors[j] = max(float(errors[j]), bound)
-                needs[j] = max(float(needs[j]), sag * most_bend)
-                if j == 0 or t[j + 3] <= tau[i - 1]:
-                    break
-                j -= 1
-        before = off
-        bend_before = bend
-        vx = ex
-        vy = ey
-        vz = ez
-        wx = bx
-        wy = by
-        wz = bz
-    return worst
-
-
-@kernel
-def _axes(points: Floats, tau: Floats, t: Floats, spans: int, errors: Floats) -> float:
-    """Raises the errors by what additional axes, linear from knot to knot, miss; returns the greatest of that."""
-    k = points.shape[1]
-    worst = 0.0
-    for c in range(3, k):
-        at = 0
-        value = float(points[0, c])
-        for j in range(spans):
-            low = float(t[j + 3])
-            high = float(t[j + 4])
-            end = at
-            while end < len(tau) - 2 and tau[end + 1] < high:
-                end += 1
-            share = (high - float(tau[end])) / float(tau[end + 1] - tau[end])
-            stop = float(points[end, c]) + share * float(points[end + 1, c] - points[end, c])
-            for i in range(at, end + 1):
-                if low <= tau[i] <= high:
-                    linear = value + (float(tau[i]) - low) / (high - low) * (stop - value)
-                    off = abs(float(points[i, c]) - linear)
-                    errors[j] = max(float(errors[j]), off)
-                    worst = max(worst, off)
-            at = end
-            value = stop
-    return worst
-
-
-@kernel
-def _density(errors: Floats, needs: Floats, spans: int, tolerance: float) -> float:
-    """Turns `needs` (the sag between data, which no knot lowers) into spans needed for each; returns their sum."""
-    for j in range(spans):
-        sag = min(float(needs[j]), 0.7 * tolerance)
-        part = max(float(errors[j]) - sag, 0.0) / (tolerance - sag)
-        needs[j] = sqrt(sqrt(max(part, _FLOOR)))
-    # An error is an oscillation through several spans: neighbours share their needs.
-    total = 0.0
-    before = float(needs[0])
-    for j in range(spans):
-        here = float(needs[j])
-        after = float(needs[j + 1]) if j + 1 < spans else here
-        needs[j] = 0.25 * before + 0.5 * here + 0.25 * after
-        before = here
-        total += float(needs[j])
-    return total
-
-
-@kernel
-def _pad(knots: Floats, spans: int, t: Floats) -> None:
-    """The knots with the end ones repeated: Shape (spans + 7,)."""
+    cut = np.zeros(spans, np.bool_)
+    taken = np.zeros(spans, np.bool_)
+    count = 0
+    while True:
+        j = -1
+        worst = tolerance
+        for i in range(spans):
+            if errors[i] > worst and not taken[i]:
+                worst = float(errors[i])
+                j = i
+        if j < 0:
+            break
+        near = 1 if errors[j] > _FAR * tolerance else _NEAR
+        cut[j] = True
+        count += 1
+        for i in range(max(j - near, 0), min(j + near + 1, spans)):
+            taken[i] = True
+    if spans + count > most:
+        return 0
+    to = spans + count
     for i in range(3):
-        t[i] = knots[0]
-        t[spans + 4 + i] = knots[spans]
-    for i in range(spans + 1):
-        t[3 + i] = knots[i]
+        t[to + 4 + i] = t[spans + 3]
+    t[to + 3] = t[spans + 3]
+    for j in range(spans - 1, -1, -1):
+        start = float(t[j + 3])
+        if cut[j]:
+            half = 0.5 * float(t[to + 3] - start)
+            for i in range(2):
+                at = to - 1 - i
+                fresh[at] = True
+                errors[at] = errors[j]
+            for c in range(rows.shape[1] // 4):
+                p0 = float(rows[j, 4 * c])
+                p1 = float(rows[j, 4 * c + 1])
+                p2 = float(rows[j, 4 * c + 2])
+                p3 = float(rows[j, 4 * c + 3])
+                rows[to - 1, 4 * c] = p0 + half * (p1 + half * (p2 + half * p3))
+                rows[to - 1, 4 * c + 1] = p1 + half * (2.0 * p2 + 3.0 * half * p3)
+                rows[to - 1, 4 * c + 2] = p2 + 3.0 * half * p3
+                rows[to - 1, 4 * c + 3] = p3
+                rows[to - 2, 4 * c] = p0
+                rows[to - 2, 4 * c + 1] = p1
+                rows[to - 2, 4 * c + 2] = p2
+                rows[to - 2, 4 * c + 3] = p3
+            t[to + 2] = start + half
+            t[to + 1] = start
+            to -= 2
+        else:
+            fresh[to - 1] = False
+            errors[to - 1] = errors[j]
+            for c in range(rows.shape[1]):
+                rows[to - 1, c] = rows[j, c]
+            t[to + 2] = start
+            to -= 1
+    return spans + count
 
 
 @kernel
-def _spread(knots: Floats, spans: int, needs: Floats, total: float, wanted: int, out: Floats) -> None:
-    """Knots at equal shares of the spans needed."""
-    out[0] = knots[0]
-    j = 0
-    done = 0.0
-    for i in range(1, wanted):
-        goal = total * i / wanted
-        while j < spans - 1 and done + needs[j] < goal:
-            done += float(needs[j])
-            j += 1
-        out[i] = float(knots[j]) + (goal - done) / float(needs[j]) * float(knots[j + 1] - knots[j])
-    out[wanted] = knots[spans]
+def _guess(points: Floats, way: Floats, tolerance: float, kinds: Ints, states: Floats) -> int:
+    """Roughly how many spans a run needs, or some fewer: from fits to a few of its vertices, knots evenly spaced."""
+    n = len(way) - 1
+    dims = points.shape[1]
+    spans = min(n, 1)
+    for _ in range(12):
+        stride = max(1, n // (8 * spans))
+        count = (n + stride - 1) // stride + 1
+        few = np.zeros((count, dims))
+        short = np.zeros(count)
+        for i in range(count):
+            at = min(i * stride, n)
+            short[i] = way[at]
+            for c in range(dims):
+                few[i, c] = points[at, c]
+        places, data, tangent = np.zeros((count, dims)), np.zeros((count, dims)), np.zeros((count, dims))
+        u, weight = np.zeros(count), np.zeros(count)
+        fill_samples(few, short, inf, tolerance, places, data, u, weight, tangent)
+        t, rows, errors = np.zeros(spans + 7), np.zeros((spans, 4 * dims)), np.zeros(spans)
+        _even_knots(float(way[n]), spans, t)
+        along = np.full(spans, _FRESH)
+        for _turn in range(2):
+            window = np.array([0, spans - 1, 1, 0])
+            if not _solve_window(
+                places, u, weight, tangent, t, spans, rows, window, along, along, kinds, states
+            ):
+                return spans
+            chord_errors(places, places, t, spans, rows, u, tangent, errors, False)
+        total = 0.0
+        for j in range(spans):
+            total += float(np.exp(_ORDER * np.log(max(float(errors[j]) / tolerance, 1e-3))))
+        wanted = ceil(_FIRST * total)
+        if wanted <= 1.15 * spans:
+            break
+        spans = min(wanted, max(1, n // 2), 4 * spans)
+    return spans
+
+
+@kernel
+def _even_knots(extent: float, spans: int, t: Floats) -> None:
+    knots = np.zeros(spans + 1)
+    for i in range(spans + 1):
+        knots[i] = extent * i / spans
+    pad_knots(knots, spans, t)
+
+
+@kernel
+def _refine(
+    places: Floats, data: Floats, u: Floats, weight: Floats, tangent: Floats, spans: int, extra: Floats, way: Floats,
+    tolerance: float, careful: bool, kinds: Ints, states: Floats, t: Floats, rows: Floats, ends: Floats, most: int,
+) -> int:  # fmt: skip
+    """Fits and inserts knots until the tolerance holds; the number of spans, or 0.  ends: the way at the knots, out."""
+    samples = u.copy()
+    _even_knots(float(way[len(way) - 1]), spans, t)
+    errors = np.full(most, inf)
+    step = max(1, len(u) // int(spans * _ENOUGH))
+    fresh = np.ones(most, np.bool_)
+    for _cycle in range(_CYCLES):
+        a = 0
+        while a < spans:
+            if not fresh[a]:
+                a += 1
+                continue
+            b = a
+            j = a
+            while j < min(b + 2 * _AROUND + 2, spans):
+                if fresh[j]:
+                    b = j
+                j += 1
+            low = max(a - _AROUND, 0)
+            high = min(b + _AROUND, spans - 1)
+            if not _relax(
+                places, data, u, weight, tangent, t, spans, rows, errors, low, high, tolerance, careful, step, kinds,
+                states,
+            ):  # fmt: skip
+                return 0
+            a = b + 1
+        worst = 0.0
+        for j in range(spans):
+            worst = max(worst, float(errors[j]))
+        _ways(samples, u, t, spans, ends)
+        if worst <= tolerance and extra.shape[1] > 0:
+            worst = max(worst, axes_errors(extra, way, ends, spans, errors))
+        if worst <= tolerance:
+            return spans
+        spans = _insert(t, spans, rows, errors, tolerance, most, fresh)
+        if spans == 0:
+            return 0
+    return 0
+
+
+@kernel
+def _ways(samples: Floats, u: Floats, t: Floats, spans: int, ends: Floats) -> None:
+    """Fills the way along the chords at each knot: samples, Shape (m,), at parameters u."""
+    i = 1
+    last = len(u) - 1
+    for j in range(spans + 1):
+        x = float(t[j + 3])
+        while i < last and u[i] < x:
+            i += 1
+        size = float(u[i] - u[i - 1])
+        part = min(max((x - float(u[i - 1])) / size, 0.0), 1.0) if size > 0.0 else 0.0
+        ends[j] = float(samples[i - 1]) + part * float(samples[i] - samples[i - 1])
+    ends[0] = samples[0]
+    ends[spans] = samples[last]
 
 
 @kernel
 def fit_spline(
-    points: Floats, data: Floats, tau: Floats, tolerance: float, knots: Floats, rows: Floats, most: int
+    points: Floats, extra: Floats, way: Floats, tolerance: float, kinds: Ints, states: Floats, ends: Floats,
+    rows: Floats, most: int,
 ) -> int:  # fmt: skip
     """The number of cubics, with few of them, that keep the tolerance along a run; 0 if none was found.
 
-    Args:     points: Shape (n + 1, >= 3), vertices and additional axes;  data: Shape (n + 1, 3), what the
-              spline is fitted to: the vertices, moved half the sag of their chords;  tau: Shape (n + 1,), way
-              along the chords, ascending from 0;  most: greatest number of pieces;
-              knots: Shape (most + 1,), out;  rows: Shape (most, 12), out: coefficients over the share 0..1 of
-              each span, four a coordinate.
+    Args:     points: Shape (n + 1, dims), vertices, dims 2 or 3;  extra: Shape (n + 1, m), additional axes;  way:
+              Shape (n + 1,), along the chords, ascending from 0;  kinds: Shape (2,), FREE, LED or HELD at the
+              start and the end;  states: Shape (2, 4 dims), position, direction (unit), half the second derivative
+              by the way and 0 there, by coordinates;  most: greatest number of cubics;
+              ends: Shape (most + 1,), out, the way at which they end;  rows: Shape (most, 4 dims), out: powers of
+              the share 0..1 of each.
     """
-    cap = most + 8
-    last = len(tau) - 1
-    t = np.zeros(cap)
-    band = np.zeros((cap, 4))
-    right = np.zeros((cap, 3))
-    errors = np.zeros(cap)
-    needs = np.zeros(cap)
-    trial = np.zeros((cap, 12))
-    now = np.zeros(cap)
-    fresh = np.zeros(cap)
-    spans = min(max(last // 24, 1), most)
-    for i in range(spans + 1):
-        now[i] = float(tau[last]) * i / spans
-    found = 0
-    failed = 0
-    for _ in range(_ROUNDS):
-        _pad(now, spans, t)
-        _assemble(data, tau, t, spans, band, right)
-        if not _solve(data, spans, band, right):
-            break
-        _pieces(t, spans, right, trial)
-        worst = _errors(points, tau, t, spans, trial, errors, needs)
-        worst = max(worst, _axes(points, tau, t, spans, errors))
-        total = _density(errors, needs, spans, tolerance)
-        if worst <= tolerance:
-            failed = 0
-            found = spans
-            for i in range(spans + 1):
-                knots[i] = now[i]
+    dims = points.shape[1]
+    first = min(_guess(points, way, tolerance, kinds, states), most)
+    t = np.zeros(most + 7)
+    for attempt in range(3):
+        careful = attempt == 2
+        spacing = float(way[len(way) - 1]) / (first * _SAMPLES * (1.0 if attempt == 0 else 4.0))
+        m = count_samples(way, spacing)
+        places, data, tangent = np.zeros((m, dims)), np.zeros((m, dims)), np.zeros((m, dims))
+        u, weight = np.zeros(m), np.zeros(m)
+        fill_samples(points, way, spacing, tolerance, places, data, u, weight, tangent)
+        spans = _refine(
+            places, data, u, weight, tangent, first, extra, way, tolerance, careful, kinds, states, t, rows, ends,
+            most,
+        )  # fmt: skip
+        if spans > 0:
             for j in range(spans):
-                for c in range(12):
-                    rows[j, c] = trial[j, c]
-            wanted = min(int(total) + 1, spans - 1 - spans // 64)
-        else:
-            failed += 1
-            if found > 0:
-                wanted = spans if failed < 3 else (spans + found) // 2
-                if wanted == spans and failed > 3:
-                    break
-            else:
-                wanted = max(int(total * (1.0 + 0.02 * failed)) + 1, spans + (0 if failed < 4 else 1))
-        if wanted > most or wanted < 1:
-            break
-        _spread(now, spans, needs, total, wanted, fresh)
-        spans = wanted
-        for i in range(spans + 1):
-            now[i] = fresh[i]
-    for j in range(found):
-        h = float(knots[j + 1] - knots[j])
-        for c in range(3):
-            rows[j, 4 * c + 1] *= h
-            rows[j, 4 * c + 2] *= h * h
-            rows[j, 4 * c + 3] *= h * h * h
-    return found
+                h = float(t[j + 4] - t[j + 3])
+                for c in range(dims):
+                    rows[j, 4 * c + 1] *= h
+                    rows[j, 4 * c + 2] *= h * h
+                    rows[j, 4 * c + 3] *= h * h * h
+            return spans
+    return 0

@@ -66,11 +66,9 @@ class FitArcs(Pass):
 
     def rewrite(self, chunks: Iterator[Toolpath], context: Context) -> Iterator[Toolpath]:
         """See the module."""
-        for path, breaks in fit_stream(chunks, rad_from_deg(self.angle), self.ratio, context):
-            if len(path):
-                yield put_in(path, self._pieces(path, breaks), context)
-            else:
-                yield path
+        for window in fit_stream(chunks, rad_from_deg(self.angle), self.ratio, context):
+            path, breaks = window.path, window.breaks[window.low : window.high + 1] > 0
+            yield put_in(path, self._pieces(path, breaks), context) if len(path) else path
 
     def _pieces(self, path: Toolpath, breaks: Flags) -> Pieces:
         n = len(path)

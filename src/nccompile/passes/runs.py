@@ -6,8 +6,10 @@
                  ↑       - the path bends by more than `angle`, or one segment is `ratio` times the other
               a break
 
-A run of more than LONGEST segments is cut there, counted from its start, so the result does not depend on how
-the path comes in chunks.
+A break is a corner if the path is not smooth there; if only feed or marks differ, or the run is cut because it is
+long, it is a joint.  A run of more than LONGEST segments is cut, counted from its start.  Each window of the path
+comes with the rows around it that its joints depend on, so the result does not depend on how the path comes in
+chunks.
 """
 
 from __future__ import annotations
@@ -22,15 +24,20 @@ import numpy.typing as npt
 
 from nccompile.geometry.tolerance import COINCIDENT
 from nccompile.kernels import expect_work
+from nccompile.kernels.spline_joints import AROUND
+from nccompile.kernels.spline_runs import CORNER, JOINT, LENGTHS
 from nccompile.passes.base import Context, Flags, gather
 from nccompile.passes.edit import STARTS, STOPS, Rows, compose, linked
 from nccompile.passes.measure import deviation
 from nccompile.toolpath.columns import Bytes, Curves, Floats, Ints, Kind, Toolpath
 
-__all__ = ["LONGEST", "Pieces", "fit_stream", "put_in", "vertex_breaks"]
+__all__ = ["LONGEST", "Pieces", "Window", "fit_stream", "put_in", "vertex_breaks"]
 
 LONGEST = 16_384
 """Segments of a run at most: the memory a fit needs is bounded by it."""
+
+_PASSES = 20
+"""How often a fit looks at each segment: a small path is already work for compiled kernels."""
 
 
 @dataclass(frozen=True)
@@ -50,51 +57,78 @@ class Pieces:
     rows: Floats
 
 
-def vertex_breaks(path: Toolpath, angle: float, ratio: float) -> Flags:
-    """Shape (n + 1,): which vertices end a run; the first and the last do. angle [rad]."""
+@dataclass(frozen=True)
+class Window:
+    """A stretch of path that ends at breaks.
+
+    around: the path from some rows before the stretch to some rows after it;  low, high: its rows;  breaks: Shape
+    (len(around) + 1,), 0 or what breaks a run at each vertex: JOINT, LENGTHS or CORNER.
+    """
+
+    around: Toolpath
+    low: int
+    high: int
+    breaks: Rows
+
+    @property
+    def path(self) -> Toolpath:
+        """The stretch itself."""
+        return self.around.rows(self.low, self.high)
+
+
+def vertex_breaks(path: Toolpath, angle: float, ratio: float) -> Rows:
+    """Shape (n + 1,): what ends a run at each vertex; the first and the last do. angle [rad]."""
     n = len(path)
-    breaks = np.ones(n + 1, np.bool_)
+    breaks = np.full(n + 1, CORNER)
     steps = (path.target - path.starts())[:, :3]
     length = np.sqrt((steps * steps).sum(axis=1))
     plain = (path.kind == Kind.LINE) & (path.profile == 0) & (length > COINCIDENT)
     a, b = steps[:-1], steps[1:]
     la, lb = length[:-1], length[1:]
-    joined = plain[1:] & plain[:-1] & (path.mark[1:] & STARTS == 0) & (path.mark[:-1] & STOPS == 0)
+    same = (path.mark[1:] & STARTS == 0) & (path.mark[:-1] & STOPS == 0)
     for column in (path.feed, path.accel, path.decel, path.radius):
-        joined &= column[1:] == column[:-1]
-    joined &= (a * b).sum(axis=1) >= cos(angle) * la * lb
-    joined &= (la <= ratio * lb) & (lb <= ratio * la)
-    breaks[1:n] = ~joined
+        same &= column[1:] == column[:-1]
+    smooth = plain[1:] & plain[:-1] & ((a * b).sum(axis=1) >= cos(angle) * la * lb)
+    even = (la <= ratio * lb) & (lb <= ratio * la)
+    breaks[1:n] = np.where(~smooth, CORNER, np.where(~even, LENGTHS, np.where(same, 0, JOINT)))
     return breaks
 
 
-def fit_stream(
-    chunks: Iterator[Toolpath], angle: float, ratio: float, context: Context
-) -> Iterator[tuple[Toolpath, Flags]]:
-    """The path in windows that end at breaks, each with the breaks of its vertices, Shape (n + 1,)."""
+def fit_stream(chunks: Iterator[Toolpath], angle: float, ratio: float, context: Context) -> Iterator[Window]:
+    """The path in windows that end at breaks."""
     held: Toolpath | None = None
+    low = 0
     for chunk in gather(chunks):
-        expect_work(context.report.segments_in)
+        expect_work(_PASSES * context.report.segments_in)
         held = chunk if held is None else Toolpath.join([held, chunk])
-        breaks = vertex_breaks(held, angle, ratio)
-        _cut_long(breaks)
-        n = len(held)
-        open_from = int(np.flatnonzero(breaks[:n])[-1]) if n else 0
-        if open_from:
-            yield held.rows(0, open_from), breaks[: open_from + 1]
-            held = held.rows(open_from, n)
+        breaks = _all_breaks(held, low, angle, ratio)
+        high = _settled(breaks)
+        if high > low:
+            around = min(high + AROUND, len(held))
+            yield Window(held.rows(0, around), low, high, breaks[: around + 1])
+            rest = max(high - AROUND, 0)
+            held, low = held.rows(rest, len(held)), high - rest
     if held is not None:
-        breaks = vertex_breaks(held, angle, ratio)
-        _cut_long(breaks)
-        yield held, breaks
+        yield Window(held, low, len(held), _all_breaks(held, low, angle, ratio))
 
 
-def _cut_long(breaks: Flags) -> None:
-    """Breaks every run after each LONGEST segments."""
-    at = np.flatnonzero(breaks)
-    for first, last in pairwise(at.tolist()):
+def _settled(breaks: Rows) -> int:
+    """The last break whose joint does not depend on what is still to come, 0 if there is none."""
+    n = len(breaks) - 1
+    known = np.flatnonzero(breaks[:n])
+    corners = known[breaks[known] > JOINT]
+    settled = known[(known + AROUND <= n) | (known <= (corners[-1] if len(corners) else 0))]
+    return int(settled[-1]) if len(settled) else 0
+
+
+def _all_breaks(path: Toolpath, low: int, angle: float, ratio: float) -> Rows:
+    """The breaks of a path of which the rows before `low` are done, with every run cut after LONGEST segments."""
+    breaks = vertex_breaks(path, angle, ratio)
+    at = np.flatnonzero(breaks[low:]) + low
+    for first, last in pairwise([low, *at[at > low].tolist()]):
         if last - first > LONGEST:
-            breaks[np.arange(first + LONGEST, last, LONGEST)] = True
+            breaks[np.arange(first + LONGEST, last, LONGEST)] = JOINT
+    return breaks
 
 
 def put_in(path: Toolpath, pieces: Pieces, context: Context) -> Toolpath:
