@@ -56,21 +56,28 @@ def _gap(x: float, y: float, kind: int, p: Floats, e: Floats) -> float:
 
 
 @kernel
+def _size(kind: int, p: Floats, e: Floats) -> float:
+    """Length [mm] of a line or arc."""
+    if kind == ARC:
+        return float(p[2]) * abs(float(p[4]))
+    dx = float(e[2]) - float(e[0])
+    dy = float(e[3]) - float(e[1])
+    return sqrt(dx * dx + dy * dy)
+
+
+@kernel
 def _nearest(
     kind: int, p: Floats, e: Floats, other: int, q: Floats, f: Floats, us: Floats, vs: Floats, out: Floats
 ) -> float:  # fmt: skip
     """The least distance [mm] of two lines or arcs;  out: Shape (>= 2,), where on the first one it is."""
-    if intersections(kind, p, e, other, q, f, us, vs) > 0:
-        x, y = place(kind, p, e, float(us[0]))
-        out[0] = x
-        out[1] = y
-        return 0.0
     best = 1e300
     for i in range(6):
         if i < 2:
             x, y = float(e[2 * i]), float(e[2 * i + 1])
         elif i < 4:
             x, y = foot(kind, p, e, float(f[2 * i - 4]), float(f[2 * i - 3]))
+        elif kind != ARC and other != ARC:
+            break
         elif kind == ARC and other == ARC:
             dx = float(q[0]) - float(p[0])
             dy = float(q[1]) - float(p[1])
@@ -79,19 +86,37 @@ def _nearest(
                 break
             side = float(p[2]) / size if i == 4 else -float(p[2]) / size
             x, y = foot(kind, p, e, float(p[0]) + side * dx, float(p[1]) + side * dy)
-        elif kind == ARC and i == 4:
+        elif i == 5:
+            break
+        elif kind == ARC:
             x, y = foot(other, q, f, float(p[0]), float(p[1]))
             x, y = foot(kind, p, e, x, y)
-        elif other == ARC and i == 4:
-            x, y = foot(kind, p, e, float(q[0]), float(q[1]))
         else:
-            break
+            x, y = foot(kind, p, e, float(q[0]), float(q[1]))
         gap = _gap(x, y, other, q, f)
         if gap < best:
             best = gap
             out[0] = x
             out[1] = y
+    # Where they cross, an end of the shorter one is within half of its length.
+    is_near = best > 0.0 and 2.0 * best <= min(_size(kind, p, e), _size(other, q, f))
+    if is_near and intersections(kind, p, e, other, q, f, us, vs) > 0:
+        x, y = place(kind, p, e, float(us[0]))
+        out[0] = x
+        out[1] = y
+        return 0.0
     return best
+
+
+@kernel
+def _apart(e: Floats, f: Floats, reach: float) -> bool:
+    """Whether two lines are surely not nearer than reach [mm]: seen along the line between their middles."""
+    dx = 0.5 * ((float(f[0]) + float(f[2])) - (float(e[0]) + float(e[2])))
+    dy = 0.5 * ((float(f[1]) + float(f[3])) - (float(e[1]) + float(e[3])))
+    gap = sqrt(dx * dx + dy * dy)
+    one = abs((float(e[2]) - float(e[0])) * dx + (float(e[3]) - float(e[1])) * dy)
+    two = abs((float(f[2]) - float(f[0])) * dx + (float(f[3]) - float(f[1])) * dy)
+    return gap * (gap - reach) > 0.5 * (one + two)
 
 
 @kernel
@@ -160,6 +185,8 @@ def deepest(
     us = np.zeros(COMMON)
     vs = np.zeros(COMMON)
     stack = np.zeros(128, np.int64)
+    firsts = np.zeros(128, np.int64)
+    spans = np.zeros(128, np.int64)
     spot = np.zeros(2)
     box = np.zeros(4)
     m = len(tree) // 2
@@ -174,6 +201,8 @@ def deepest(
         worst = float(least[i])
         depth[i] = 0.0
         stack[0] = 1
+        firsts[0] = 0
+        spans[0] = m
         top = 1
         while top > 0:
             top -= 1
@@ -184,18 +213,23 @@ def deepest(
             if dx * dx + dy * dy >= reach * reach:
                 continue
             if node < m:
-                span = 1
-                first = node
-                while first < m:
-                    first *= 2
-                    span *= 2
-                if first - m + span > low[i] and first - m < high[i]:
+                half = spans[top] // 2
+                middle = firsts[top] + half
+                if middle < high[i]:
+                    stack[top] = 2 * node + 1
+                    firsts[top] = middle
+                    spans[top] = half
+                    top += 1
+                if middle > low[i]:
                     stack[top] = 2 * node
-                    stack[top + 1] = 2 * node + 1
-                    top += 2
+                    firsts[top] = middle - half
+                    spans[top] = half
+                    top += 1
                 continue
             j = node - m
             if not low[i] <= j < high[i]:
+                continue
+            if kind != ARC and other_kinds[j] != ARC and _apart(e, other_ends[j], radius[j] - worst):
                 continue
             gap = _nearest(
                 kind, p, e, int(other_kinds[j]), other_table[max(int(other_curve[j]), 0)], other_ends[j], us, vs, spot

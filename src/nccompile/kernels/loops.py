@@ -20,7 +20,7 @@ from nccompile.kernels.curve_points import ARC, ELLIPSE, POLYNOMIAL, Floats, der
 from nccompile.kernels.curves import in_plane_length
 from nccompile.kernels.intersect import COMMON, intersections, own_crossing, place
 
-__all__ = ["all_crossings", "way_share", "without_loops"]
+__all__ = ["intervals", "way_share", "without_loops"]
 
 _JOINT = 1e-7  # [mm] a common point this near to the end of a row is that end
 _LEVEL = 1e-6  # [mm] greatest difference in height at a crossing
@@ -29,6 +29,7 @@ _PARALLEL = 1e-7  # [rad] directions nearer than this are one
 _SMOOTH = 1e-3  # [rad] a loop that comes back in the direction in which it left is a closed contour
 _BENT = 1e-7  # [1/mm] curvatures nearer than this are one
 _TINY = 1e-12  # [rad] stands for a difference in curvature
+_MOST = 4096  # places at which one segment is cut
 _TURN = 6.283185307179586
 
 
@@ -336,46 +337,65 @@ def without_loops(
 
 
 @kernel
-def all_crossings(
-    kinds: Kinds, curve: Rows, table: Floats, ends: Floats, tree: Floats, i: int, cuts: Floats
+def intervals(
+    kinds: Kinds, curve: Rows, table: Floats, ends: Floats, tree: Floats, owner: Rows, parts: Floats, middle: Floats
 ) -> int:  # fmt: skip
-    """Fills cuts, Shape (>= 2,), with 0, every u at which segment i meets another one, and 1, ascending.
+    """Segments cut wherever they meet another one, in order.
 
-    Returns:  their number;  meetings for which there is no room are left out.
+    owner: Shape (k,), parts: Shape (k, 2) and middle: Shape (k, 4), out: segment, u at start and end, and its middle
+    as the ends of a segment.  Returns:  their number, more than there is room if that does not do.
     """
     n = len(kinds)
     m = len(tree) // 2
     us = np.zeros(COMMON)
     vs = np.zeros(COMMON)
     stack = np.zeros(128, np.int64)
-    stack[0] = 1
-    top = 1
-    low = tree[m + i]
-    row = table[max(int(curve[i]), 0)]
-    cuts[0] = 0.0
-    count = 1
-    while top > 0:
-        top -= 1
-        node = int(stack[top])
-        if (
-            tree[node, 0] > low[2] or tree[node, 2] < low[0] or tree[node, 1] > low[3] or tree[node, 3] < low[1]
-        ):  # fmt: skip
-            continue
-        if node < m:
-            stack[top] = 2 * node
-            stack[top + 1] = 2 * node + 1
-            top += 2
-            continue
-        j = node - m
-        if j >= n or j == i:
-            continue
-        found = intersections(
-            int(kinds[i]), row, ends[i], int(kinds[j]), table[max(int(curve[j]), 0)], ends[j], us, vs
-        )  # fmt: skip
-        for k in range(found):
-            if count < len(cuts) - 1:
-                cuts[count] = us[k]
-                count += 1
-    cuts[count] = 1.0
-    cuts[: count + 1].sort()
-    return count + 1
+    cuts = np.zeros(_MOST)
+    count = 0
+    for i in range(n):
+        row = table[max(int(curve[i]), 0)]
+        low = tree[m + i]
+        stack[0] = 1
+        top = 1
+        cut = 0
+        while top > 0:
+            top -= 1
+            node = int(stack[top])
+            if (
+                tree[node, 0] > low[2] or tree[node, 2] < low[0] or tree[node, 1] > low[3] or tree[node, 3] < low[1]
+            ):  # fmt: skip
+                continue
+            if node < m:
+                stack[top] = 2 * node
+                stack[top + 1] = 2 * node + 1
+                top += 2
+                continue
+            j = node - m
+            if j >= n or j == i:
+                continue
+            found = intersections(
+                int(kinds[i]), row, ends[i], int(kinds[j]), table[max(int(curve[j]), 0)], ends[j], us, vs
+            )  # fmt: skip
+            for k in range(found):
+                if cut < _MOST - 1:
+                    cuts[cut] = us[k]
+                    cut += 1
+        cuts[cut] = 1.0
+        cuts[:cut].sort()
+        before = 0.0
+        for k in range(cut + 1):
+            u = float(cuts[k])
+            if u - before <= _BEHIND:
+                continue
+            if count < len(owner):
+                x, y = place(int(kinds[i]), row, ends[i], 0.5 * (before + u))
+                owner[count] = i
+                parts[count, 0] = before
+                parts[count, 1] = u
+                middle[count, 0] = x
+                middle[count, 1] = y
+                middle[count, 2] = x
+                middle[count, 3] = y
+            count += 1
+            before = u
+    return count

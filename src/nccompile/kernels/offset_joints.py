@@ -3,7 +3,8 @@
     e: end of the offset before    s: start of the offset after    r = |d|, t: bend of the contour
 
     convex     an arc about the corner from e to s, or e - tip - s along the tangents, if r / cos(t / 2) is within
-               the limit; lines that bend by less than _TANGENT are extended to the tip, within the tolerance
+               the limit; lines that bend by less than _TANGENT are extended to the tip, within the tolerance; a line
+               that bends by what rounded directions do ends (begins) at s (e) of a curve
     concave    both are cut at their common point; where they have none, a straight line from e to s
     d changes  convex: an arc of the radius before, then straight to s;  concave: as above, each with its own d
     side       a straight line across the contour
@@ -25,6 +26,7 @@ __all__ = ["cut_piece", "join_offsets"]
 
 _COINCIDENT = 1e-9  # [mm], as geometry.tolerance.COINCIDENT
 _TANGENT = 0.02  # [rad] lines that bend less are extended: they meet within 5e-5 r of the arc
+_SLIGHT = 5e-7  # [mm] by which a line may be too near where it is moved to meet a curve: directions that were rounded
 _BACK = 1e-9  # [rad] a contour that bends by this less than pi turns back on itself
 _RETRACED = 1e-3  # [rad] the same where a contour closes: it is led in and out on one line
 _TRIED = 6  # pieces at both sides of a concave corner that are tried for a common point
@@ -172,13 +174,13 @@ def _convex(
     reach = 1.0 / max(cos(0.5 * turn), 1e-9)
     tx = cx + ((ex - cx) + (sx - cx)) / (1.0 + cos(turn)) if reach < 1e6 else cx
     ty = cy + ((ey - cy) + (sy - cy)) / (1.0 + cos(turn)) if reach < 1e6 else cy
-    if abs(turn) <= _TANGENT and abs(d) * (reach - 1.0) <= tolerance:
-        if kind[i] < ARC and kind[j] < ARC:
-            ends[i, 2] = tx
-            ends[i, 3] = ty
-            ends[j, 0] = tx
-            ends[j, 1] = ty
-            return 0
+    if abs(turn) <= _TANGENT and kind[i] < ARC and kind[j] < ARC and abs(d) * (reach - 1.0) <= tolerance:
+        ends[i, 2] = tx
+        ends[i, 3] = ty
+        ends[j, 0] = tx
+        ends[j, 1] = ty
+        return 0
+    if 0.5 * abs(d) * turn * turn <= _SLIGHT:
         if kind[i] < ARC:
             ends[i, 2] = sx
             ends[i, 3] = sy
@@ -277,7 +279,7 @@ def join_offsets(
         if is_closing:
             continue
         gap = sqrt((ex - sx) * (ex - sx) + (ey - sy) * (ey - sy))
-        is_small = is_next and abs(turn) <= _TANGENT and gap <= tolerance
+        is_small = is_next and d[last] == d[two] and gap * abs(turn) <= 2.0 * _SLIGHT
         if is_small and _chamfer(i, j, gap, piece_kind, piece_curve, piece_table, piece_ends, piece_part):
             ex, ey = float(piece_ends[i, 2]), float(piece_ends[i, 3])
             sx, sy = float(piece_ends[j, 0]), float(piece_ends[j, 1])

@@ -19,7 +19,7 @@ from nccompile.diagnostics import Severity
 from nccompile.kernels import gouges as kernels
 from nccompile.kernels.boxes import box_tree, leaves
 from nccompile.kernels.intersect import place
-from nccompile.kernels.loops import all_crossings
+from nccompile.kernels.loops import intervals
 from nccompile.kernels.offset import cut_curves
 from nccompile.kernels.offset_emit import CHECKED
 from nccompile.kernels.offset_joints import cut_piece
@@ -43,11 +43,8 @@ _SAG = 0.2
 _DIGITS = 1e-12
 """Part of the coordinates that rounding takes."""
 
-_CUTS = 256
-"""Crossings of one row that are looked at."""
-
-_WIDE = 1e-9
-"""Part of a row between two crossings that is too small to look at."""
+_SAME = 1e-6
+"""[mm] Ends of free stretches nearer than this are one crossing."""
 
 
 class Sections(NamedTuple):
@@ -152,53 +149,85 @@ class _Walk:
         self.row = emitted.origin[mine]
         self.owner = np.searchsorted(moving.row, self.row)
         self.piece = emitted.piece[mine]
-        self._columns = (
+        columns = (
             offsets.kinds[self.piece],
             offsets.curve[self.piece],
             offsets.table,
             offsets.ends[self.piece],
         )
-        self._tree = np.empty((2 * leaves(len(self.piece)), 4))
-        box_tree(*self._columns, self._tree)
-        self._gouges, self._contour = gouges, contour
+        self._kinds, self._curve, self._table, self._ends = columns
+        tree = np.empty((2 * leaves(len(self.piece)), 4))
+        box_tree(*columns, tree)
+        room = 4 * len(self.piece) + 16
+        while True:
+            self.cut, self.parts, middle = np.empty(room, np.int64), np.empty((room, 2)), np.empty((room, 4))
+            count = intervals(*columns, tree, self.cut, self.parts, middle)
+            if count <= room:
+                break
+            room = count
+        self.cut, self.parts, middle = self.cut[:count], self.parts[:count], middle[:count]
+        line, none = np.ones(count, np.uint8), np.full(count, -1)
+        self.free = gouges.depths(line, none, self._table, middle, np.full(count, contour))[0] == 0.0
 
-    def free(self, k: int) -> tuple[float, float] | None:
-        """The parameters of piece k where it begins and ends to be free; None if it is not."""
-        kinds, curve, table, ends = self._columns
-        cuts = np.empty(_CUTS)
-        cuts = cuts[: all_crossings(*self._columns, self._tree, k, cuts)]
-        wide = np.diff(cuts) > _WIDE
-        low, high = cuts[:-1][wide], cuts[1:][wide]
-        row = table[max(int(curve[k]), 0)]
-        middle = np.array([place(int(kinds[k]), row, ends[k], float(u)) * 2 for u in 0.5 * (low + high)])
-        n = len(low)
-        depth, _ = self._gouges.depths(
-            np.ones(n, np.uint8), np.full(n, -1), table, middle.reshape(n, 4), np.full(n, self._contour)
+    def _point(self, interval: int, side: int) -> Floats:
+        k = int(self.cut[interval])
+        row = self._table[max(int(self._curve[k]), 0)]
+        return np.array(place(int(self._kinds[k]), row, self._ends[k], float(self.parts[interval, side])))
+
+    def longest(self) -> tuple[tuple[int, float], tuple[int, float]] | None:
+        """First and last place, piece and its parameter, of the longest way that is free; None if nothing is.
+
+        A way goes on where a free stretch begins at the point at which the one before ends: a loop is between them.
+        """
+        edges = np.flatnonzero(np.diff(self.free, prepend=False, append=False))
+        first, last = edges[::2], edges[1::2] - 1
+        if not len(first):
+            return None
+        starts = np.array([self._point(i, 0) for i in first])
+        ends = np.array([self._point(i, 1) for i in last])
+        size = [
+            float(np.sqrt(((self._point(i, 1) - self._point(i, 0)) ** 2).sum()))
+            for i in range(len(self.free))
+        ]
+        way = np.concatenate([[0.0], np.cumsum(size)])
+        open_ones = np.ones(len(first), np.bool_)
+        best, found = -1.0, (0, 0)
+        for begin in range(len(first)):
+            at, length = begin, 0.0
+            while open_ones[at]:
+                open_ones[at] = False
+                length += float(way[last[at] + 1] - way[first[at]])
+                near = np.abs(starts[at + 1 :] - ends[at]).max(axis=1, initial=0.0) <= _SAME
+                following = np.flatnonzero(near & open_ones[at + 1 :])
+                if len(following):
+                    at += 1 + int(following[-1])
+            if length > best:
+                best, found = length, (int(first[begin]), int(last[at]))
+        one, two = found
+        return (int(self.cut[one]), float(self.parts[one, 0])), (
+            int(self.cut[two]),
+            float(self.parts[two, 1]),
         )
-        good = np.flatnonzero(depth == 0.0)
-        return (float(low[good[0]]), float(high[good[-1]])) if len(good) else None
 
 
 def shorten(
     offsets: Offsets, moving: Moving, emitted: Emitted, gouges: Gouges, contours: Rows, loops: Flags
 ) -> bool:
-    """Takes off contours what lies before the first and behind the last place that is free of gouges.
+    """Takes off contours that begin or end in a gouge what lies before and behind their longest free way.
 
     contours: their numbers;  loops: Shape (n,), source rows where loops are cut out.  Returns whether any changed.
     """
     changed = False
     for contour in contours:
         walk = _Walk(offsets, moving, emitted, gouges, int(contour))
-        count = len(walk.piece)
-        first = next(((k, found[0]) for k in range(count) if (found := walk.free(k))), None)
-        last = next(((k, found[1]) for k in reversed(range(count)) if (found := walk.free(k))), None)
-        if first is None or last is None:
+        found = walk.longest()
+        if found is None or (walk.free[0] and walk.free[-1]):
             continue
-        first = first if loops[walk.row[0]] else (0, 0.0)
-        last = last if loops[walk.row[-1]] else (count - 1, 1.0)
-        if first != (0, 0.0) or last != (count - 1, 1.0):
-            _take_off(offsets, moving, walk, first, last)
-            changed = True
+        end = len(walk.piece) - 1, 1.0
+        first = found[0] if loops[walk.row[0]] else (0, 0.0)
+        last = found[1] if loops[walk.row[-1]] else end
+        _take_off(offsets, moving, walk, first, last)
+        changed = True
     return changed
 
 

@@ -57,6 +57,9 @@ __all__ = ["ToolRadius"]
 _SIDES = int(Mark.TOOL_LEFT | Mark.TOOL_RIGHT)
 _CLEAR = _SIDES | int(Mark.TOOL_STOP)
 
+_WORK = 4
+"""What correcting a row costs, in the rows by which other passes count."""
+
 _SAMPLES = 15
 """Places of an ellipse's or cubic's offset piece at which its distance is measured, each way."""
 
@@ -144,7 +147,7 @@ class ToolRadius(Pass):
 
     def _correct(self, path: Toolpath, d: Floats, loops: Flags, count: int, context: Context) -> Toolpath:
         """The first `count` rows; a contour that begins in them also ends in them."""
-        expect_work(count)
+        expect_work(_WORK * count)
         moving = moving_rows(path, d, count, context)
         if not len(moving.row):
             plain = path.rows(0, count)
