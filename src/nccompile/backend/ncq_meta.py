@@ -38,8 +38,7 @@ class Provenance:
 
     source, machine: names without folders, so that equal inputs give equal bytes wherever they lie;
     the SHA-256 are those of the program's bytes and of the machine's canonical JSON;
-    angle_tolerance [deg]; time_law: one of `TIME_LAWS`; smoothing: duration of the mean that the interpolator
-    runs [s] (planner `jerk`), 0 for none.
+    angle_tolerance [deg]; time_law: one of `TIME_LAWS`.
     """
 
     source: str
@@ -48,7 +47,6 @@ class Provenance:
     machine_sha256: str
     angle_tolerance: float
     time_law: str
-    smoothing: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +78,6 @@ class Meta:
             "source": {"name": p.source, "sha256": p.source_sha256},
             "machine": {"name": p.machine, "sha256": p.machine_sha256},
             "planning": {"angle_tolerance": p.angle_tolerance, "time_law": p.time_law}
-            | ({"smoothing": p.smoothing} if p.smoothing else {})
             | ({"third_order": True} if self.third_order else {}),
             "totals": asdict(self.totals),
             "names": list(self.names),
@@ -125,7 +122,6 @@ class Meta:
                 _text(source["name"]), _text(source["sha256"]),
                 _text(machine["name"]), _text(machine["sha256"]),
                 _number(planning["angle_tolerance"]), planning["time_law"],
-                _not_negative(planning.get("smoothing", 0.0)),
             ),
             totals=_totals(content["totals"], axes),
             names=tuple(_text(n) for n in content["names"]),
@@ -167,12 +163,6 @@ def _number(value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
         raise ValueError(f"{value!r} is not a number")
     return float(value)
-
-
-def _not_negative(value: object) -> float:
-    if (number := _number(value)) < 0.0:
-        raise ValueError(f"{value!r} is negative")
-    return number
 
 
 def _whole(value: object) -> int:

@@ -49,24 +49,20 @@ def rows_of(path: Toolpath) -> k.Rows:
     borders = np.searchsorted(e.segment, np.arange(len(path) + 1)).astype(np.int32)
     return k.Rows(
         path.kind, path.starts(), path.target, path.curve, path.curves.plane, path.curves.parameters,
-        path.length, path.feed, path.v_limit, path.v_junction, path.v_end, a_end, path.accel, path.decel, jerk,
-        path.profile, path.line, borders[:-1], borders[1:], e.kind, e.number, e.position, e.k, np.empty(len(path)),
+        path.length, path.feed, path.v_limit, path.v_junction, path.v_end, a_end, path.accel, path.decel, path.decel,
+        jerk, path.profile, path.line, borders[:-1], borders[1:], e.kind, e.number, e.position, e.k,
+        np.empty(len(path)),
     )  # fmt: skip
 
 
-def sample(
-    chunks: Iterable[Toolpath], cycle: float, law: int = TRAPEZOID, smoothing: float = 0.0
-) -> Iterator[SampleBlock]:
-    """Samples a planned path every `cycle` seconds; the last block ends at the end of the path, at rest.
-
-    smoothing [s]: as the path was planned for (planner `jerk`).
-    """
+def sample(chunks: Iterable[Toolpath], cycle: float, law: int = TRAPEZOID) -> Iterator[SampleBlock]:
+    """Samples a planned path every `cycle` seconds; the last block ends at the end of the path, at rest."""
     supply = iter(chunks)
     window = next(supply, None)
     if window is None:
         return
     stepper = Stepper(window.start)
-    inputs = k.Inputs(k.GO, 0.0, 1.0, law, 0, 0, 1, 1, cycle, smoothing)
+    inputs = k.Inputs(k.GO, 0.0, 1.0, law, 0, 0, 1, 1, cycle)
     rows, head, version, complete = rows_of(window), 0, 0, False
     cycles = 0
     while True:

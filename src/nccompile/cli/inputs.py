@@ -11,7 +11,7 @@ import typer
 
 from nccompile.backend import ncq
 from nccompile.cli.options import ProgramOptions, Report
-from nccompile.cli.queues import STDIN, is_queue, read_queue, require_program
+from nccompile.cli.queues import STDIN, is_queue, read_queue, refuse_device, require_program
 from nccompile.cli.report import report
 from nccompile.errors import UsageError
 from nccompile.machine.model import Machine, default_machine, load
@@ -35,7 +35,7 @@ __all__ = [
 class Job:
     """A planned path ready to be run, sampled or drawn.
 
-    name: of its file;  time_law and smoothing [s]: it was planned for;  chunks: the path from its
+    name: of its file;  time_law: it was planned for;  chunks: the path from its
     start, each time it is called;  job_time [s];  segments: how many;  machine, machine_sha256: those it was
     planned for.
     """
@@ -43,7 +43,6 @@ class Job:
     name: str
     axes: tuple[str, ...]
     time_law: str
-    smoothing: float
     chunks: Callable[[], Iterator[Toolpath]]
     job_time: float
     segments: int
@@ -52,8 +51,11 @@ class Job:
 
 
 def machine_of(file: Path | None) -> Machine:
-    """The machine of a file, or the built-in one; raises MachineError."""
-    return default_machine() if file is None else load(file)
+    """The machine of a file, or the built-in one; raises UsageError, MachineError."""
+    if file is None:
+        return default_machine()
+    refuse_device(file, "a machine file")
+    return load(file)
 
 
 def read_program(path: Path) -> Source:
@@ -94,7 +96,7 @@ def _job(
     origin: ncq.Provenance,
 ) -> Job:
     return Job(
-        name, axes, origin.time_law, origin.smoothing, chunks, job_time, segments, origin.machine,
+        name, axes, origin.time_law, chunks, job_time, segments, origin.machine,
         origin.machine_sha256,
     )  # fmt: skip
 

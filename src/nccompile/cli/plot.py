@@ -46,7 +46,7 @@ def plot(
     job = open_job(path, axes_of, chosen, diagnostics)
     cycle = axes_of.cycle * max(1, ceil(job.job_time / axes_of.cycle / MOST_SAMPLES))
     expect_work(int(job.job_time / cycle))
-    motion = gather(job.axes, sample(job.chunks(), cycle, LAWS[job.time_law], job.smoothing))
+    motion = gather(job.axes, sample(job.chunks(), cycle, LAWS[job.time_law]))
     title = f"{job.name}: {job.segments} segments, {job.job_time:.3f} s"
     before = None
     if chosen.passes and path.is_file():  # a pipe cannot be read again

@@ -128,7 +128,6 @@ def _options(job: Job, realtime: bool, override: float, m_delay: str, at: list[s
         commands=[parse_command(text) for text in at or ()],
         m_delay=_delay(m_delay),
         vel_mode=LAWS[job.time_law],
-        smoothing=job.smoothing,
         file=job.name,
     )
 

@@ -71,7 +71,7 @@ def sample(
     job = open_job(path, axes_of, options, diagnostics)
     cycle = seconds_from_us(cycle_us or axes_of.cycle_us)
     expect_work(int(job.job_time / cycle))
-    blocks = sample_chunks(job.chunks(), cycle, LAWS[job.time_law], job.smoothing)
+    blocks = sample_chunks(job.chunks(), cycle, LAWS[job.time_law])
     if output is None:
         write_samples_csv(sys.stdout, job.axes, blocks)
         return

@@ -19,9 +19,6 @@ __all__ = ["BURST", "Burst", "Snapshot", "Stepper"]
 BURST = 4096
 """Greatest number of cycles in one call."""
 
-TRAIL = 4096
-"""Greatest number of cycles in the mean of a smoothed motion."""
-
 _LOG = 4096
 
 Floats = npt.NDArray[np.float64]
@@ -57,7 +54,6 @@ class Snapshot:
     here: Floats
     nodes_u: Floats
     nodes_s: Floats
-    trail: Floats
 
 
 class Stepper:
@@ -73,7 +69,6 @@ class Stepper:
         self.here = np.array(start, np.float64)
         self._nodes_u = np.zeros(NODES)
         self._nodes_s = np.zeros(NODES)
-        self._trail = np.zeros(TRAIL)
         self._position = np.zeros((BURST, axes))
         self._velocity = np.zeros(BURST)
         self._line = np.zeros(BURST, np.int32)
@@ -98,10 +93,10 @@ class Stepper:
         self._shift(rows, head, 1)
         done, reason, logged = k.advance(
             rows, head, tail, self._settled, int(complete), inputs, min(n, BURST), self.f, i,
-            self._nodes_u, self._nodes_s, self._trail, self.here, self._position, self._velocity, self._line,
-            self._status, self._switches, self._log,
+            self._nodes_u, self._nodes_s, self.here, self._position, self._velocity, self._line, self._status,
+            self._switches, self._log,
         )  # fmt: skip
-        dropped = int(i[k.FOLLOWER if i[k.SMOOTH] else k.ROW]) - head
+        dropped = int(i[k.ROW]) - head
         self._shift(rows, head + dropped, -1)
         self._settled = max(0, self._settled - dropped)
         if self.f[k.OVERRIDE] != override:
@@ -115,27 +110,23 @@ class Stepper:
         """Turns distances from the head into places in `rows` (sign 1), or back (-1)."""
         i = self.i
         i[k.ROW] += sign * head
-        i[k.FOLLOWER] += sign * head
         for slot in (k.M_ROW, k.TABLE_ROW):
             if sign > 0 and i[slot] >= 0:
                 i[slot] += head
             elif sign < 0:
                 i[slot] = i[slot] - head if i[slot] >= head else -1
-        row = int(i[k.FOLLOWER if i[k.SMOOTH] else k.ROW])
-        if i[k.RUNNING] == 1 or row < i[k.ROW]:
-            first = int(rows.event_begin[row if sign > 0 else head])
+        if i[k.RUNNING] == 1:
+            first = int(rows.event_begin[head])
             i[k.EVENT] += sign * first
 
     def tangent(self, rows: k.Rows, head: int) -> tuple[float, float, float]:
         """Direction of the path in X, Y, Z at the present set position; zeros at rest (vecActTangent)."""
-        smooth = bool(self.i[k.SMOOTH])
-        row = int(self.i[k.FOLLOWER if smooth else k.ROW])
-        still = self.f[k.COVERED] == 0.0 if smooth else self.f[k.V] == 0.0
-        if still or (self.i[k.RUNNING] == 0 and row >= self.i[k.ROW]):
+        if self.f[k.V] == 0.0 or self.i[k.RUNNING] == 0:
             return 0.0, 0.0, 0.0
-        out = np.zeros(3)
-        s = float(self.f[k.FOLLOWER_S if smooth else k.S])
-        k.direction(rows, head + row, s, self._nodes_u, self._nodes_s, int(self.i[k.NODES]), out)
+        out, s = np.zeros(3), float(self.f[k.S])
+        k.direction(
+            rows, head + int(self.i[k.ROW]), s, self._nodes_u, self._nodes_s, int(self.i[k.NODES]), out
+        )
         return float(out[0]), float(out[1]), float(out[2])
 
     def snapshot(self) -> Snapshot:
@@ -146,7 +137,6 @@ class Stepper:
             self.here.copy(),
             self._nodes_u.copy(),
             self._nodes_s.copy(),
-            self._trail[: max(1, int(self.i[k.SMOOTH]))].copy(),
         )
 
     def restore(self, saved: Snapshot) -> None:
@@ -156,5 +146,4 @@ class Stepper:
         self.here[:] = saved.here
         self._nodes_u[:] = saved.nodes_u
         self._nodes_s[:] = saved.nodes_s
-        self._trail[: len(saved.trail)] = saved.trail
         self._version = -1

@@ -68,7 +68,7 @@ class Inputs:
     quick_deceleration: float = 0.0
     last_way_pos: float = 0.0
 
-    def to_kernel(self, cycle: float, *, patient: bool, smoothing: float = 0.0) -> k.Inputs:
+    def to_kernel(self, cycle: float, *, patient: bool) -> k.Inputs:
         """The inputs as the kernel takes them; the strongest stop wins."""
         stop = k.GO
         for active, command in (
@@ -81,7 +81,7 @@ class Inputs:
         override = min(max(self.override, OVERRIDE_MIN), OVERRIDE_MAX)
         return k.Inputs(
             stop, self.quick_deceleration, override, self.vel_mode, int(self.wait_at_next_stop),
-            int(self.single_step), int(self.ack_m), int(patient), cycle, smoothing,
+            int(self.single_step), int(self.ack_m), int(patient), cycle,
         )  # fmt: skip
 
 
@@ -127,14 +127,12 @@ class Saved:
 class Interpolator:
     """Interpolates the segments of a ring buffer.
 
-    ring: supplies rows; start: Shape (axes,), set position before the first segment; cycle: seconds;
-    smoothing: duration of the mean [s], as the path was planned for (planner `jerk`), 0 for none.
+    ring: supplies rows; start: Shape (axes,), set position before the first segment; cycle: seconds.
     """
 
     ring: RingBuffer
     start: Floats
     cycle: float
-    smoothing: float = 0.0
     inputs: Inputs = field(default_factory=Inputs)
     outputs: Outputs = field(init=False)
 
@@ -151,7 +149,7 @@ class Interpolator:
         view = self.ring.view()
         burst = self._stepper.run(
             view.rows, view.head, view.tail, complete=view.complete, version=view.version,
-            inputs=self.inputs.to_kernel(self.cycle, patient=patient, smoothing=self.smoothing), n=n,
+            inputs=self.inputs.to_kernel(self.cycle, patient=patient), n=n,
         )  # fmt: skip
         head = view.head + burst.dropped
         out, i = self.outputs, self._stepper.i

@@ -102,6 +102,7 @@ class _Bank:
             a_end=np.zeros(room),
             accel=np.zeros(room),
             decel=np.zeros(room),
+            brake=np.zeros(room),
             jerk=np.zeros(room),
             profile=np.zeros(room, np.uint16),
             line=np.zeros(room, ints),
@@ -120,16 +121,24 @@ class RingBuffer:
     """A bounded queue of planned segments.
 
     capacity: segments it holds; event_capacity: switch points, M functions and dwells it holds (default: as
-    many as segments, at least 1024); axes: letters of the toolpath that will be pushed.
+    many as segments, at least 1024); axes: letters of the toolpath that will be pushed; acceleration: of each of
+    these axes, Shape (k,) [mm/s²], which bounds quick stops (`Rows.brake`); None: without bound.
     """
 
-    def __init__(self, axes: tuple[str, ...], capacity: int, event_capacity: int | None = None) -> None:
+    def __init__(
+        self,
+        axes: tuple[str, ...],
+        capacity: int,
+        event_capacity: int | None = None,
+        acceleration: Floats | None = None,
+    ) -> None:
         if capacity < 1:
             raise UsageError(f"a ring buffer holds at least one segment, not {capacity}")
         self.axes = axes
         self.capacity = capacity
         self.event_capacity = max(1024, capacity) if event_capacity is None else event_capacity
         self.names: tuple[str, ...] = ()
+        self._acceleration = acceleration
         self._banks = tuple(
             _Bank.allocate(len(axes), 2 * capacity, 2 * self.event_capacity) for _ in range(2)
         )
@@ -264,6 +273,7 @@ class RingBuffer:
         rows.start[self._tail] = chunk.start if begin == 0 else chunk.target[begin - 1]
         rows.start[self._tail + 1 : to.stop] = chunk.target[begin : end - 1]
         curve = chunk.curve[begin:end]
+        rows.brake[to] = self._brakes(chunk, begin, end, rows.start[to])
         curved = np.flatnonzero(curve >= 0)
         own = (self._tail + curved).astype(np.int32)
         rows.curve[to] = -1
@@ -279,6 +289,19 @@ class RingBuffer:
         borders = np.searchsorted(events.segment, np.arange(begin, end + 1)) - event_begin + self._event_tail
         rows.event_begin[to] = borders[:-1]
         rows.event_end[to] = borders[1:]
+
+    def _brakes(self, chunk: Toolpath, begin: int, end: int, start: Floats) -> Floats | float:
+        """Shape (n,): the deceleration that the axes allow along straight rows; on curves that of the plan."""
+        if self._acceleration is None:
+            return np.inf
+        length, decel = chunk.length[begin:end], chunk.decel[begin:end]
+        way = np.abs(chunk.target[begin:end] - start).max(axis=0, initial=0.0)
+        moving = np.flatnonzero(way > 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = np.abs(chunk.target[begin:end] - start)[:, moving] / length[:, None]
+            allowed = (self._acceleration[moving] / slope).min(axis=1, initial=np.inf)
+        straight = (chunk.curve[begin:end] < 0) & ((chunk.profile[begin:end] & 0x7FFF) == 0) & (length > 0.0)
+        return np.where(straight, allowed, decel)
 
     def _compact(self) -> None:
         """Moves the rows at hand to the front of the other bank and switches to it."""

@@ -23,6 +23,7 @@ from nccompile.kernels import interpolator as k
 from nccompile.kernels.stepper import BURST, Burst
 from nccompile.kernels.timelaw import SIGMOID, TRAPEZOID
 from nccompile.kinematics import build
+from nccompile.machine.limits import limits
 from nccompile.machine.model import Machine
 from nccompile.runtime.clock import Clock, undisturbed
 from nccompile.runtime.drives.protocol import ALL_CHECKS, NO_ACCELERATION_CHECK, NO_CHECKS, Drives
@@ -52,8 +53,7 @@ class Options:
     realtime: cycles at their deadlines instead of as fast as possible;  override: factor on velocities;
     commands: inputs that change at times;  m_delay: seconds until an M function is acknowledged, 0: in the
     next cycle, None: only by a command;  burst: greatest number of cycles between two looks at the inputs;
-    vel_mode: time law, None: that of the machine;  smoothing: duration of the mean [s], as the path
-    was planned for;  file: name of the program in diagnostics.
+    vel_mode: time law, None: that of the machine;  file: name of the program in diagnostics.
     """
 
     realtime: bool = False
@@ -62,7 +62,6 @@ class Options:
     m_delay: float | None = 0.0
     burst: int = BURST
     vel_mode: int | None = None
-    smoothing: float = 0.0
     file: str = "program"
 
 
@@ -87,8 +86,8 @@ class CyclicTask:
         kinematics = build(machine, path.axes)
         self.machine, self.options = machine, options or Options()
         self.drives: Drives = VirtualDrives(machine, kinematics.axes) if drives is None else drives
-        self.ring = RingBuffer(path.axes, machine.queue)
-        self.interpolator = Interpolator(self.ring, path.start, machine.cycle, self.options.smoothing)
+        self.ring = RingBuffer(path.axes, machine.queue, acceleration=limits(machine, path.axes).acceleration)
+        self.interpolator = Interpolator(self.ring, path.start, machine.cycle)
         self.report = RunReport(machine.name, machine.cycle)
         self._clock = Clock(machine.cycle) if self.options.realtime else None
         self.output = Output(
