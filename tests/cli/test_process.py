@@ -65,6 +65,17 @@ def test_a_reader_that_goes_is_no_error(tmp_path: Path, command: list[str]) -> N
     assert (process.wait(timeout=60), said) == (0, "")
 
 
+@pytest.mark.parametrize("arguments", ["dump p.nc", "lint p.nc", "--help"])
+@pytest.mark.parametrize(("stdout", "code"), [(">&-", 0), ("> /dev/full", 2)])
+def test_a_closed_or_full_standard_output(tmp_path: Path, arguments: str, stdout: str, code: int) -> None:
+    (tmp_path / "p.nc").write_text("% p\nN10 G1 X1 F20\nN20 G1 X2 F20\n")
+    line = f"{sys.executable} -m nccompile {arguments} {stdout}"
+    done = subprocess.run(line, shell=True, cwd=tmp_path, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == code
+    assert ("error: " in done.stderr) is (code == 2)
+    assert "Traceback" not in done.stderr
+
+
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_an_interrupt_leaves_no_file(tmp_path: Path, number: signal.Signals, code: int) -> None:
     program = _long_program(tmp_path / "p.nc", 150_000)

@@ -178,8 +178,21 @@ def test_wrong_usage(command: Command, tmp_path: Path, arguments: list[str]) -> 
     _assert_refused(command(*arguments), 2, tmp_path, set())
 
 
-def test_a_device_is_no_program(command: Command, tmp_path: Path) -> None:
-    _assert_refused(command("compile", "/dev/zero", "-o", "p.ncq"), 2, tmp_path, set())
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["compile", "/dev/zero", "-o", "p.ncq"],
+        ["info", "/dev/zero"],
+        ["dump", "/dev/zero"],
+        ["machine", "check", "/dev/zero"],
+        ["lint", "-", "-m", "/dev/zero"],
+    ],
+)
+def test_devices_are_not_read(command: Command, tmp_path: Path, arguments: list[str]) -> None:
+    """They have no end."""
+    result = command(*arguments, stdin=b"% a\nN10 G1 X1 F20\n")
+    _assert_refused(result, 2, tmp_path, set())
+    assert "is a device" in result.err
 
 
 def test_the_output_is_not_the_input(command: Command, program: Path, tmp_path: Path) -> None:

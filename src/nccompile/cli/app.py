@@ -14,6 +14,7 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from types import FrameType
 from typing import Annotated, Any
 
@@ -125,6 +126,7 @@ def _options(
 
 def run(arguments: Sequence[str]) -> int:
     """Runs one command line and returns its exit code; nothing but Python's own start can raise."""
+    _open_closed_streams()
     _exit_on_terminate()
     try:
         app(args=list(arguments), prog_name="nccompile")
@@ -132,11 +134,22 @@ def run(arguments: Sequence[str]) -> int:
         code = leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None)
     except KeyboardInterrupt:
         code = INTERRUPTED
+    except OSError as error:  # help that cannot be written: no command has begun
+        _say(f"error: standard output cannot be written: {error.strerror or error}")
+        code = 2
+        _forget_stdout()
     else:
         code = 0
     if code == INTERRUPTED:
         _say("interrupted")
     return _close_stdout(code)
+
+
+def _open_closed_streams() -> None:
+    """Gives streams that the caller has closed (`>&-`) an empty file, so that nobody need ask for them."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))  # noqa: SIM115 - open till the end
 
 
 def _close_stdout(code: int) -> int:

@@ -12,8 +12,10 @@ __all__ = ["check"]
 
 def check(file: Annotated[Path, typer.Argument(help="The machine file (TOML).")]) -> None:
     """Check a machine file and print its axes."""
+    from nccompile.cli.queues import refuse_device
     from nccompile.machine.model import load
 
+    refuse_device(file, "a machine file")
     machine = load(file)
     print(f"{file}: {machine.name}, {len(machine.axes)} axes, cycle {machine.cycle_us} us")
     for letter, axis in machine.axes.items():
