@@ -22,7 +22,16 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Generic, ParamSpec, TypeVar
 
-__all__ = ["LARGE", "Kernel", "compiled", "expect_work", "kernel", "on_first_compilation", "use"]
+__all__ = [
+    "LARGE",
+    "Kernel",
+    "compiled",
+    "expect_work",
+    "kernel",
+    "machine_code",
+    "on_first_compilation",
+    "use",
+]
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -107,8 +116,8 @@ def on_first_compilation(tell: Callable[[], None]) -> None:
 
 
 @functools.cache
-def _folder() -> Path:
-    """The cache folder of these kernels.
+def machine_code() -> Path:
+    """The folder where these kernels are kept compiled; another one as soon as any of them changes.
 
     numba's cache looks only at the file of the kernel itself, so a changed callee would leave stale machine
     code; a folder named after the content of all kernels cannot be stale.
@@ -121,7 +130,7 @@ def _folder() -> Path:
 @functools.cache
 def _numba() -> Any:
     """Imports numba with a cache folder of our own."""
-    folder = _folder()
+    folder = machine_code()
     if not folder.exists() and _state["tell"] is not None:
         _state["tell"]()
     os.environ.setdefault("NUMBA_CACHE_DIR", str(folder))
@@ -131,17 +140,17 @@ def _numba() -> Any:
 
 
 def _native_forms(name: str) -> Sequence[Any]:
-    if not _folder().exists():
+    if not machine_code().exists():
         return ()
     from nccompile.kernels import native  # noqa: PLC0415 - llvmlite takes its time, and Python kernels need none
 
-    return native.load(_folder(), name)
+    return native.load(machine_code(), name)
 
 
 def _keep(name: str, overloads: Mapping[Any, Any]) -> None:
     from nccompile.kernels import native  # noqa: PLC0415
 
-    native.save(_folder(), name, list(overloads.values()))
+    native.save(machine_code(), name, list(overloads.values()))
 
 
 def _cache_base() -> Path:

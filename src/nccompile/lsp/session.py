@@ -21,6 +21,7 @@ from nccompile.lint.config import Config, config_for
 from nccompile.lint.program import Cancelled
 from nccompile.lsp.analysis import Analysis, Settings, Times, analyse, timed
 from nccompile.lsp.document import Document, Snapshot
+from nccompile.lsp.warming import Warming
 from nccompile.machine.model import default_machine, load
 
 __all__ = ["Outdated", "Session", "Work"]
@@ -76,7 +77,9 @@ class Session:
         self.documents: dict[str, Document] = {}
         self._publish, self._say, self._done = publish, say, done
         self._works: dict[str, Work] = {}
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="analysis")
+        self._checks = ThreadPoolExecutor(1, thread_name_prefix="check")
+        self._timings = ThreadPoolExecutor(1, thread_name_prefix="timing")
+        self._warming = Warming()
         self._said: set[str] = set()
         self._idle: asyncio.TimerHandle | None = None
         gc.disable()  # an analysis leaves next to no cycles; see IDLE
@@ -84,6 +87,7 @@ class Session:
     def open(self, document: Document) -> None:
         """A document was opened, or opened again."""
         self.documents[document.uri] = document
+        self._warming.start(len(document.text.lines))
         self.changed(document)
 
     def close(self, uri: str) -> None:
@@ -117,7 +121,9 @@ class Session:
         """Gives up what is under way."""
         for work in self._works.values():
             work.drop()
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        for pool in (self._checks, self._timings):
+            pool.shutdown(wait=False, cancel_futures=True)
+        self._warming.stop()
 
     async def analysis(self, uri: str, *, with_times: bool = False) -> tuple[Document, Analysis]:
         """A document and the analysis of its newest version.
@@ -144,7 +150,7 @@ class Session:
         begun = time.perf_counter()
         snapshot, settings = document.snapshot(), self._settings(document)
         try:
-            analysis = await loop.run_in_executor(self._pool, _analysed, snapshot, work, settings)
+            analysis = await loop.run_in_executor(self._checks, _analysed, snapshot, work, settings)
             if not work.wanted:
                 return
             document.analysis = analysis
@@ -157,7 +163,7 @@ class Session:
             await asyncio.sleep(pause)  # times are for those who read, not for those who type
             if not work.wanted:
                 return
-            times: Times | None = await loop.run_in_executor(self._pool, timed, analysis, work.is_wanted)
+            times: Times | None = await loop.run_in_executor(self._timings, timed, analysis, work.is_wanted)
             analysis.times = times
             if work.wanted:
                 work.timed.set_result(analysis)
