@@ -11,9 +11,10 @@ import numpy as np
 from nccompile.geometry.frames import rotation
 from nccompile.passes.base import Pass
 from nccompile.passes.pipeline import parse
-from nccompile.toolpath.columns import Floats
+from nccompile.toolpath.columns import Floats, Kind, Toolpath
+from tests.passes.paths import Probe
 
-__all__ = ["EVERY", "Turned"]
+__all__ = ["EVERY", "Turned", "dense"]
 
 
 def _stays(points: Floats) -> Floats:
@@ -53,9 +54,14 @@ def _tilted(points: Floats) -> Floats:
     return np.asarray(points @ rotation(*(radians(a) for a in (20.0, 30.0, 40.0))).T)
 
 
+def _sheared(points: Floats) -> Floats:
+    return np.asarray(points @ np.array([[1.0, 0.5, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]]).T)
+
+
 EVERY = [
     Turned("transform{rotate=30,x=5,scale=2,mirror=y,cx=3}", 1e-6, _turned),
     Turned("transform{roll=20,pitch=30,yaw=40,tolerance=0.01}", 0.03, _tilted),
+    Turned("transform{matrix=1 0.5 0; 0 2 0; 0 0 1,tolerance=0.01}", 25.0, _sheared),
     Turned("reverse"),
     Turned("move-start{segment=2}", closed=True),
     Turned("split{segment=1,at=0.3}"),
@@ -70,3 +76,13 @@ EVERY = [
     Turned("flatten{length=2,angle=20}", 2.0),
     Turned("limit-arc-feed{accel=100,jump=50,per-radius=20}"),
 ]
+
+
+def dense(path: Toolpath, step: float) -> Floats:
+    """Points on the moving segments, at most `step` apart. Shape (m, 3)."""
+    points = [np.zeros((0, 3))]
+    for i in np.flatnonzero((path.kind <= Kind.POLYNOMIAL) & (path.length > 0.0)):
+        probe = Probe(path, int(i))
+        count = int(np.ceil(probe.length / step)) + 1
+        points.append(np.array([probe.point(float(s)) for s in np.linspace(0.0, probe.length, count)]))
+    return np.vstack(points)

@@ -16,7 +16,7 @@ from nccompile.passes.base import Report
 from nccompile.passes.pipeline import REGISTRY
 from nccompile.passes.reverse import reversed_path
 from nccompile.toolpath.columns import Floats, Kind, Toolpath
-from tests.passes.every import EVERY, Turned
+from tests.passes.every import EVERY, Turned, dense
 from tests.passes.paths import Probe, Sketch, paths, run, same
 
 SIZES = (1, 7, 1000)
@@ -99,16 +99,6 @@ def test_events_lines_and_axes_are_kept(turned: Turned, data: st.DataObject) -> 
     every = np.append(path.target[:, 3], path.start[3])
     assert out.target[:, 3].min(initial=every[0]) >= every.min() - 1e-9
     assert out.target[:, 3].max(initial=every[0]) <= every.max() + 1e-9
-
-
-def dense(path: Toolpath, step: float) -> Floats:
-    """Points on the moving segments, at most `step` apart. Shape (m, 3)."""
-    points = [np.zeros((0, 3))]
-    for i in np.flatnonzero((path.kind <= Kind.POLYNOMIAL) & (path.length > 0.0)):
-        probe = Probe(path, int(i))
-        count = int(np.ceil(probe.length / step)) + 1
-        points.append(np.array([probe.point(float(s)) for s in np.linspace(0.0, probe.length, count)]))
-    return np.vstack(points)
 
 
 @pytest.mark.parametrize("turned", [t for t in EVERY if t.slack < np.inf], ids=str)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 
 from nccompile.errors import UsageError
 from nccompile.passes.compress import Compress
@@ -19,6 +20,7 @@ from nccompile.passes.reverse import Reverse
 from nccompile.passes.split import Split, place_at
 from nccompile.passes.transform import Transform
 from nccompile.toolpath.columns import Kind, Mark, Plane, Toolpath
+from tests.passes.every import dense
 from tests.passes.paths import Sketch, paths, run, same
 
 
@@ -140,6 +142,57 @@ def test_a_tilted_frame_keeps_the_tolerance(path: Toolpath, roll: float, yaw: fl
             )
             assert near <= path.length[i] / 20 + 0.02
     assert np.abs(back.end - path.end).max() <= 1e-7
+
+
+_parts = st.floats(-3.0, 3.0)
+
+
+@settings(max_examples=40)
+@given(paths(most=6, flat=True), st.tuples(_parts, _parts, _parts, _parts), st.sampled_from([0, 1, 2]))
+def test_a_matrix_that_keeps_planes_maps_every_point(
+    path: Toolpath, m: tuple[float, float, float, float], turn: int
+) -> None:
+    if abs(m[0] * m[3] - m[1] * m[2]) < 0.01:
+        return
+    flat = np.array([[m[0], m[1], 0.4], [m[2], m[3], -0.7], [0.0, 0.0, 1.5]])
+    whole = np.roll(flat, turn, axis=0)
+    p = Transform(matrix="; ".join(" ".join(map(repr, row)) for row in whole.tolist()), z=1.0)
+    out, report = run(p, path)
+    before, after = samples(path)[0] @ whole.T + [0, 0, 1], samples(out)[0]
+    assert len(before) == len(after)  # nothing was split: arcs are ellipses, ellipses and cubics are exact
+    digits = 1e-8 + 1e-12 * np.abs(before).max(initial=0.0)
+    assert np.abs(before - after).max(initial=0.0) <= digits
+    assert (report.deviation or 0.0) <= 1e-6 + 1e3 * digits
+
+
+@settings(max_examples=12)
+@given(paths(most=2, stops=False), st.lists(_parts, min_size=9, max_size=9))
+def test_any_matrix_keeps_the_tolerance(path: Toolpath, numbers: list[float]) -> None:
+    whole = np.array(numbers).reshape(3, 3)
+    if abs(np.linalg.det(whole)) < 0.1 or path.length.max() > 10.0:
+        return
+    p = Transform(matrix="; ".join(" ".join(map(repr, row)) for row in whole.tolist()), tolerance=0.02)
+    out, report = run(p, path)
+    exact, made = dense(path, 0.05) @ whole.T, dense(out, 0.01)
+    if len(exact):
+        assert float(np.max(cKDTree(made).query(exact)[0])) <= 0.02 + 0.005 + 1e-9 * np.abs(exact).max()
+    assert report.deviation is not None
+    assert report.deviation <= 0.02 * p.frame.stretch[1] / p.frame.stretch[0] + 1e-6
+
+
+def test_a_circle_becomes_an_ellipse_and_an_ellipse_a_circle() -> None:
+    out, _ = run(Transform(matrix="2 0 0; 0 1 0; 0 0 1"), Sketch((5, 0)).arc(5.0, pi, turn=pi / 2).path())
+    assert out.kind.tolist() == [Kind.ELLIPSE]
+    assert out.curves.parameters[0, :4] == pytest.approx([0, 0, 10, 5])
+    assert out.end[:2] == pytest.approx([-10, 0])
+
+
+@pytest.mark.parametrize(
+    "matrix", ["1 0 0; 0 1 0", "1 0 0; 0 1 0; 0 0 x", "1 0 0; 0 1 0; 1 1 0", "1 2; 3 4; 5 6"]
+)
+def test_matrices_that_are_none_are_refused(matrix: str) -> None:
+    with pytest.raises(UsageError, match="matrix"):
+        Transform(matrix=matrix)
 
 
 def test_a_right_angle_keeps_arcs_in_another_plane() -> None:

@@ -1,8 +1,9 @@
-"""Frames: similarity maps of space, P' = scale * Q P + t with Q orthogonal (SoftMotion §8.3, §6.4).
+"""Frames: affine maps of space, P' = M P + t with det M not 0 (SoftMotion §8.3, §6.4).
 
     Q = Rz(yaw) Ry(pitch) Rx(roll)        roll, pitch, yaw about the fixed axes X, then Y, then Z
+    M = (x' y' z')                        the columns of M are the frame's unit vectors, as §8.3 gives them
 
-Plain numbers in rad and mm; a mirror has det Q = -1.
+Plain numbers in rad and mm; a mirror has det M < 0; M = s Q with Q orthogonal is a similarity, which keeps circles.
 """
 
 from __future__ import annotations
@@ -11,40 +12,89 @@ from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
+import numpy.typing as npt
 
 from nccompile.geometry.curve import Floats
 
-__all__ = ["Frame", "rotation"]
+__all__ = ["Frame", "mapped_conics", "rotation"]
 
 _ROUNDED = 4e-16
+_SIMILAR = 1e-12
+"""Relative: a map of a plane is a similarity if it stretches all directions alike but for rounding."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """scale > 0;  q: Shape (3, 3), orthogonal;  t: Shape (3,) [mm]."""
+    """m: Shape (3, 3);  t: Shape (3,) [mm]."""
 
-    scale: float
-    q: Floats
+    m: Floats
     t: Floats
 
     def points(self, xyz: Floats) -> Floats:
         """Maps points, Shape (n, 3); one and the same point gives the same bits wherever it stands."""
-        m = self.scale * self.q
         out = np.empty_like(xyz)
         for i in range(3):
-            out[:, i] = m[i, 0] * xyz[:, 0] + m[i, 1] * xyz[:, 1] + m[i, 2] * xyz[:, 2] + self.t[i]
+            m = self.m[i]
+            out[:, i] = m[0] * xyz[:, 0] + m[1] * xyz[:, 1] + m[2] * xyz[:, 2] + self.t[i]
         return out
+
+    def inverse(self) -> Frame:
+        """The map back."""
+        back: Floats = np.linalg.inv(self.m).astype(np.float64)
+        return Frame(back, -(back @ self.t))
 
     @property
     def mirrors(self) -> bool:
         """Whether left and right change places."""
-        return float(np.linalg.det(self.q)) < 0.0
+        return float(np.linalg.det(self.m)) < 0.0
 
-    def plane_to(self, normal: int) -> int | None:
-        """The axis 0..2 along which the normal axis of a plane comes to lie, None if along none."""
-        column = np.abs(self.q[:, normal])
-        at = int(np.argmax(column))
-        return at if column[at] == 1.0 and float(column.sum()) == 1.0 else None
+    @property
+    def stretch(self) -> tuple[float, float]:
+        """The least and the greatest factor by which lengths change."""
+        sizes = np.linalg.svd(self.m, compute_uv=False)
+        return float(sizes[-1]), float(sizes[0])
+
+    def normal_of(self, u: int, v: int) -> int | None:
+        """The axis 0..2 perpendicular to the plane in which the axes u and v come to lie, None if to none."""
+        for axis in range(3):
+            if self.m[axis, u] == 0.0 and self.m[axis, v] == 0.0:
+                return axis
+        return None
+
+    def is_similar(self, u: int, v: int) -> bool:
+        """Whether figures in the plane of the axes u and v keep their shape."""
+        a, b = self.m[:, u], self.m[:, v]
+        size = float(a @ a)
+        return abs(size - float(b @ b)) <= _SIMILAR * size and abs(float(a @ b)) <= _SIMILAR * size
+
+
+def mapped_conics(
+    main: Floats, sub: Floats, direction: Floats, start: Floats, sweep: Floats, m: Floats
+) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    """What a linear map of their plane makes of ellipses, or of arcs with main = sub = r.  Shape (n,) each.
+
+    P(w) = A (cos w, sin w) with the half axes as columns of A.  M A = U S V with V a rotation by f, so
+
+        M P(w) = U S (cos(w + f), sin(w + f))       half axes S in the directions U; if U mirrors, w runs backwards
+
+    Args:     half axes [mm], direction of the main one, start and sweep [rad];  m: Shape (2, 2).
+    """
+    c, s = np.cos(direction), np.sin(direction)
+    a = np.empty((len(main), 2, 2))
+    for i in range(2):
+        a[:, i, 0] = main * (m[i, 0] * c + m[i, 1] * s)
+        a[:, i, 1] = sub * (m[i, 1] * c - m[i, 0] * s)
+    u, sizes, v = np.linalg.svd(a)
+    flip = _mirrors(v)
+    v[flip, 1], u[flip, :, 1] = -v[flip, 1], -u[flip, :, 1]
+    side = np.where(_mirrors(u), -1.0, 1.0)
+    begin = start + np.arctan2(v[:, 1, 0], v[:, 0, 0])
+    return sizes[:, 0], sizes[:, 1], np.arctan2(u[:, 1, 0], u[:, 0, 0]), side * begin, side * sweep
+
+
+def _mirrors(m: Floats) -> npt.NDArray[np.bool_]:
+    """Which matrices, Shape (n, 2, 2), mirror."""
+    return np.asarray(m[:, 0, 0] * m[:, 1, 1] < m[:, 0, 1] * m[:, 1, 0])
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Floats:

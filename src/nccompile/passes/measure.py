@@ -13,9 +13,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from nccompile.geometry.frames import Frame
 from nccompile.kernels import distance as kernels
-from nccompile.passes.edit import Links
-from nccompile.toolpath.columns import CURVE_PARAMETERS, Floats, Kind, Toolpath
+from nccompile.passes.edit import Links, geometry
+from nccompile.toolpath.columns import Floats, Kind, Toolpath
 
 __all__ = ["deviation", "one_sided", "samples"]
 
@@ -27,18 +28,25 @@ _MOST = 64
 _REACH = 10
 
 
-def deviation(before: Toolpath, after: Toolpath, links: Links) -> float:
-    """The greatest distance [mm] between two paths, both ways, in X, Y, Z."""
+def deviation(before: Toolpath, after: Toolpath, links: Links, frame: Frame | None = None) -> float:
+    """The greatest distance [mm] between two paths, both ways, in X, Y, Z.
+
+    frame: the map by which the path was moved on purpose; way back its greatest stretch bounds the distance.
+    """
     if not len(before) or not len(after) or not len(links.segment):
         return 0.0
     sample, owner, u = samples(before)
+    sample = sample if frame is None else frame.points(sample)
     link = _at(links.segment + links.p0, owner + u)
     there = one_sided(sample, after, links.row[link])
     order = np.lexsort((links.q0, links.row))
     per_row = np.bincount(links.row, minlength=len(after))
     sample, owner, u = samples(after, np.minimum(2 * per_row, _MOST))
     link = order[_at((links.row + links.q0)[order], owner + u)]
-    return max(there, one_sided(sample, before, links.segment[link]))
+    if frame is None:
+        return max(there, one_sided(sample, before, links.segment[link]))
+    back = one_sided(frame.inverse().points(sample), before, links.segment[link])
+    return max(there, frame.stretch[1] * back)
 
 
 def _at(keys: Floats, wanted: Floats) -> Rows:
@@ -50,7 +58,7 @@ def one_sided(sample: Floats, other: Toolpath, near: npt.NDArray[np.intp]) -> fl
     """The greatest distance [mm] of samples, Shape (m, 3), from `other`; near: a segment of it near each one."""
     if not len(sample):
         return 0.0
-    return kernels.deviations(*_columns(other), sample, near.astype(np.int64), _REACH)
+    return kernels.deviations(*geometry(other), sample, near.astype(np.int64), _REACH)
 
 
 def samples(path: Toolpath, count: Rows | None = None) -> tuple[Floats, Rows, Floats]:
@@ -67,21 +75,9 @@ def samples(path: Toolpath, count: Rows | None = None) -> tuple[Floats, Rows, Fl
     first = np.cumsum(number) - number
     u: Floats = (np.arange(len(owner)) - first[owner]) / np.maximum(number[owner], 1)
     out = np.empty((len(owner), 3))
-    kernels.sample_rows(*_columns(path), owner, u, out)
+    kernels.sample_rows(*geometry(path), owner, u, out)
     steps = np.diff(out, axis=0, prepend=out[:1])
     way = np.cumsum(np.sqrt((steps * steps).sum(axis=1)))
     way -= way[first[owner]]
     length = np.where(path.length > 0.0, path.length, 1.0)[owner]
     return out, owner, np.where(path.curve[owner] >= 0, np.minimum(way / length, 1.0 - 1e-9), u)
-
-
-def _columns(path: Toolpath) -> tuple[npt.NDArray[np.uint8], Rows, Floats, Floats]:
-    """Kinds, planes, curve rows and X-Y-Z positions, one row a segment."""
-    n = len(path)
-    planes = np.zeros(n, np.int64)
-    rows = np.zeros((n, CURVE_PARAMETERS))
-    curved = np.flatnonzero(path.curve >= 0)
-    planes[curved] = path.curves.plane[path.curve[curved]]
-    rows[curved] = path.curves.parameters[path.curve[curved]]
-    points = np.vstack([path.start[None, :3], path.target[:, :3]])
-    return path.kind, planes, rows, np.ascontiguousarray(points)

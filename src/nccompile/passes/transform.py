@@ -1,14 +1,16 @@
 """transform: move, turn, stretch, mirror a path, or put it into a frame (SoftMotion §3.3, §6.4, §8.3).
 
-    P' = scale * Rz(yaw) Ry(pitch) Rx(roll) Rz(rotate) Mirror (P - C) + C + t      C: the fixed point (cx, cy, cz)
+    P' = scale * Rz(yaw) Ry(pitch) Rx(roll) Rz(rotate) Mirror (M (P - C) + m) + C + t      C: (cx, cy, cz), fixed
 
-             y'                  Lines stay lines.  A curve stays what it is while its plane comes to lie in
-         \\   |   /  x'           one of X-Y, Z-X, Y-Z; in a tilted plane it becomes cubics in space within
-          \\  |  / rotate        `tolerance`.  Additional axes are translated, never turned or stretched.
-           \\ | /____ x
+             y'                  Lines stay lines and cubics cubics.  An arc or ellipse stays what it is, or an arc
+         \\   |   /  x'           becomes an ellipse where M stretches its plane unevenly, while its plane comes to
+          \\  |  / rotate        lie in X-Y, Z-X or Y-Z.  Curves in tilted planes, and helices that are stretched
+           \\ | /____ x         unevenly, become cubics in space within `tolerance`.
 
-A mirror swaps left and right of tool radius correction.  Feeds, D and switch points (a share of their segment)
-stay.
+`matrix` is M, rows divided by ";": its columns are the unit vectors of the frame (§8.3); a fourth number in each row
+is m.  Additional axes are translated, never turned or stretched.  A mirror swaps left and right of tool radius
+correction.  Feeds, D and switch points (a share of their segment) stay.  The deviation in the report is that from
+the path moved exactly.
 
 Example:
     -p transform{rotate=90}
@@ -31,13 +33,14 @@ from typing import ClassVar
 import numpy as np
 
 from nccompile.errors import UsageError
-from nccompile.geometry.frames import Frame, rotation
+from nccompile.geometry.frames import Frame, mapped_conics, rotation
 from nccompile.geometry.parts import Way, tangent_at
 from nccompile.geometry.spatial import cubics
 from nccompile.kernels.distance import place_on
-from nccompile.passes.base import Context, Pass, bounded, gather
-from nccompile.passes.edit import Draft
-from nccompile.toolpath.columns import Curves, Floats, Kind, Mark, Plane, Toolpath
+from nccompile.passes.base import Context, Flags, Pass, bounded, gather
+from nccompile.passes.edit import Draft, Links
+from nccompile.passes.measure import deviation
+from nccompile.toolpath.columns import Bytes, Curves, Floats, Kind, Mark, Plane, Toolpath, Words
 from nccompile.toolpath.lengths import PLANE_AXES, THIRD_AXIS, path_lengths
 from nccompile.units import rad_from_deg
 
@@ -46,14 +49,18 @@ __all__ = ["Transform", "swap_sides"]
 _PLANE_OF_NORMAL = {2: Plane.XY, 1: Plane.ZX, 0: Plane.YZ}
 _SIDES = int(Mark.TOOL_LEFT | Mark.TOOL_RIGHT)
 
+_LEAST, _GREATEST = 1e-6, 1e6
+"""Factors by which a frame may change lengths."""
+
 
 @dataclass(frozen=True)
 class Transform(Pass):
-    """A similarity of space.
+    """An affine map of space.
 
     x, y, z, p, q, u, v, w: translation [mm];  rotate: about Z, counter-clockwise [°];  roll, pitch, yaw [°];
-    scale > 0;  mirror: letters of the axes that change their sign, as in mirror=x;  cx, cy, cz: the fixed point
-    of all but the translation [mm];  tolerance: of curves in tilted planes [mm].
+    scale > 0;  mirror: letters of the axes that change their sign, as in mirror=x;  matrix: 9 or 12 numbers, as in
+    matrix=0 -1 0; 1 0 0; 0 0 1;  cx, cy, cz: the fixed point of all but the translation [mm];  tolerance: of curves
+    that become cubics [mm].
     """
 
     name: ClassVar[str] = "transform"
@@ -71,13 +78,14 @@ class Transform(Pass):
     yaw: float = 0.0
     scale: float = 1.0
     mirror: str = ""
+    matrix: str = ""
     cx: float = 0.0
     cy: float = 0.0
     cz: float = 0.0
     tolerance: float = 0.001
 
     def __post_init__(self) -> None:
-        bounded("scale", self.scale, 1e-6, 1e6, "")
+        bounded("scale", self.scale, _LEAST, _GREATEST, "")
         bounded("tolerance", self.tolerance, 1e-6, 1.0, "mm")
         for name in ("x", "y", "z", "p", "q", "u", "v", "w", "cx", "cy", "cz"):
             bounded(name, getattr(self, name), -1e7, 1e7, "mm")
@@ -87,37 +95,64 @@ class Transform(Pass):
             raise UsageError(
                 f"mirror={self.mirror}: write the letters of the axes that change their sign: x, y, z"
             )
+        least, greatest = self.frame.stretch
+        if not _LEAST * (1.0 - 1e-9) <= least <= greatest <= _GREATEST * (1.0 + 1e-9):
+            raise UsageError(
+                f"matrix={self.matrix}: lengths change by {least:g} to {greatest:g}, not by 1e-06 to 1e+06"
+            )
 
     @cached_property
     def frame(self) -> Frame:
         """The map of X, Y, Z."""
+        own, offset = _matrix(self.matrix)
         signs = np.array([-1.0 if letter in self.mirror.lower() else 1.0 for letter in "xyz"])
         turn = rotation(*(rad_from_deg(a) for a in (self.roll, self.pitch, self.yaw)))
-        q = turn @ rotation(0.0, 0.0, rad_from_deg(self.rotate)) * signs[None, :]
+        outer = self.scale * (turn @ rotation(0.0, 0.0, rad_from_deg(self.rotate)) * signs[None, :])
+        m = outer @ own
         fixed = np.array([self.cx, self.cy, self.cz])
-        return Frame(self.scale, q, fixed - self.scale * (q @ fixed) + np.array([self.x, self.y, self.z]))
+        return Frame(m, fixed - m @ fixed + outer @ offset + np.array([self.x, self.y, self.z]))
 
     def rewrite(self, chunks: Iterator[Toolpath], context: Context) -> Iterator[Toolpath]:
         """See the module."""
         for chunk in gather(chunks):
-            yield self._moved(self._spatial(chunk))
+            spatial, links = self._spatial(chunk)
+            moved = self._moved(spatial)
+            if context.measure:
+                context.report.deviate(deviation(chunk, moved, links, self.frame))
+            yield moved
 
-    def _spatial(self, path: Toolpath) -> Toolpath:
-        """The path with cubics in space for the curves whose plane will be tilted."""
-        tilted = np.zeros(len(path), np.bool_)
-        for i in np.flatnonzero(path.curve >= 0).tolist():
-            plane = int(path.curves.plane[path.curve[i]])
-            tilted[i] = plane != Plane.SPACE and self.frame.plane_to(THIRD_AXIS[plane]) is None
-        if not tilted.any():
-            return path
+    def _spatial(self, path: Toolpath) -> tuple[Toolpath, Links]:
+        """The path with cubics in space for the curves that no row of the curve table holds behind the map."""
+        lost = np.flatnonzero(self._lost(path))
+        if not len(lost):
+            return path, Links.copies(np.arange(len(path)))
         draft = Draft(path)
-        starts = path.starts()
+        starts, tolerance = path.starts(), self.tolerance / self.frame.stretch[1]
+        into = np.zeros(len(path), np.bool_)
+        into[lost] = True
         for i in range(len(path)):
-            if tilted[i]:
-                in_space(draft, i, starts[i], self.tolerance / self.scale)
+            if into[i]:
+                in_space(draft, i, starts[i], tolerance)
             else:
                 draft.copy(i)
-        return draft.build()
+        return draft.build(), Links.from_rows(draft.links)
+
+    def _lost(self, path: Toolpath) -> Flags:
+        """Shape (n,): which plane curves come to lie in none, or are helices whose plane is stretched unevenly."""
+        out = np.zeros(len(path), np.bool_)
+        curved = np.flatnonzero(path.curve >= 0)
+        plane = path.curves.plane[path.curve[curved]]
+        rise = (path.target - path.starts())[curved]
+        for at, (u, v) in PLANE_AXES.items():
+            own, third = plane == at, THIRD_AXIS[at]
+            normal = self.frame.normal_of(u, v)
+            if normal is None:
+                out[curved[own]] = True
+                continue
+            straight = all(self.frame.m[i, third] == 0.0 for i in range(3) if i != normal)
+            if not (straight and self.frame.is_similar(u, v)):
+                out[curved[own & (rise[:, third] != 0.0)]] = True
+        return out
 
     def _moved(self, path: Toolpath) -> Toolpath:
         """The mapped path; every curve has a plane that stays one."""
@@ -127,55 +162,85 @@ class Transform(Pass):
         for column, letter in enumerate(path.axes[3:], 3):
             positions[:, column] += getattr(self, letter.lower(), 0.0)
         mark = swap_sides(path.mark) if self.frame.mirrors else path.mark
-        curves = Curves(path.curves.plane.copy(), path.curves.parameters.copy())
-        for row, kind in zip(path.curve[path.curve >= 0], path.kind[path.curve >= 0], strict=True):
-            plane, p = self._curve(int(kind), int(curves.plane[row]), curves.parameters[row])
-            curves.plane[row] = plane
-            curves.parameters[row] = p
+        kind, curves = self._curves(path)
         moved = path.replace(
-            start=positions[0], target=positions[1:].reshape(n, -1), mark=mark, curves=curves
+            start=positions[0], kind=kind, target=positions[1:].reshape(n, -1), mark=mark, curves=curves
         )
         return moved.replace(length=path_lengths(moved))
 
-    def _curve(self, kind: int, plane: int, p: Floats) -> tuple[int, Floats]:
-        """The mapped curve row and its plane."""
+    def _curves(self, path: Toolpath) -> tuple[Bytes, Curves]:
+        """The kinds and the curve table of the mapped path."""
         f = self.frame
-        out = np.zeros(12)
-        if plane == Plane.SPACE:
-            out[:] = _linear(f.scale * f.q, p.reshape(3, 4), f.t).ravel()
-            return plane, out
-        normal = f.plane_to(THIRD_AXIS[plane])
-        assert normal is not None
-        new = int(_PLANE_OF_NORMAL[normal])
-        rows, columns = PLANE_AXES[new], PLANE_AXES[plane]
-        q2 = f.q[np.ix_(rows, columns)]
-        t2 = f.t[list(rows)]
-        if kind == Kind.POLYNOMIAL:
-            out[:8] = _linear(f.scale * q2, p[:8].reshape(2, 4), t2).ravel()
-            return new, out
-        side = 1.0 if float(np.linalg.det(q2)) > 0.0 else -1.0
-        turn = float(np.arctan2(q2[1, 0], q2[0, 0]))
-        out[:] = p
-        out[:2] = f.scale * (q2 @ p[:2]) + t2
-        out[2] = f.scale * p[2]
-        if kind == Kind.ARC:
-            out[3], out[4] = side * p[3] + turn, side * p[4]
-        else:
-            out[3], out[4] = f.scale * p[3], side * p[4] + turn
-            out[5], out[6] = side * p[5], side * p[6]
-        return new, out
+        kind, planes, rows = path.kind.copy(), path.curves.plane.copy(), path.curves.parameters.copy()
+        curved = np.flatnonzero(path.curve >= 0)
+        table = path.curve[curved]
+        old = path.curves.plane[table]
+        free = table[old == Plane.SPACE]
+        rows[free] = _cubics(rows[free], f.m, np.broadcast_to(f.t, (len(free), 3)))
+        for plane, (u, v) in PLANE_AXES.items():
+            own = np.flatnonzero(old == plane)
+            normal = f.normal_of(u, v)
+            if normal is None or not len(own):
+                continue
+            new = int(_PLANE_OF_NORMAL[normal])
+            axes, third = list(PLANE_AXES[new]), THIRD_AXIS[plane]
+            height = path.target[curved[own], third]
+            shift = f.t[axes] + f.m[axes, third] * height[:, None]
+            planes[table[own]] = new
+            kind[curved[own]], rows[table[own]] = _mapped(
+                kind[curved[own]], rows[table[own]], f.m[np.ix_(axes, (u, v))], shift, f.is_similar(u, v)
+            )
+        return kind, Curves(planes, rows)
 
 
-def _linear(m: Floats, c: Floats, t: Floats) -> Floats:
-    """Coefficients of mapped polynomials, Shape (k, 4): the constants also move by t."""
-    out: Floats = m @ c
-    out[:, 0] += t
+def _mapped(kind: Bytes, rows: Floats, m: Floats, shift: Floats, similar: bool) -> tuple[Bytes, Floats]:
+    """Kinds and rows of plane curves under a map of their plane: m, Shape (2, 2); shift, Shape (n, 2) [mm]."""
+    out = np.zeros_like(rows)
+    cubic = kind == Kind.POLYNOMIAL
+    out[cubic] = _cubics(rows[cubic], m, shift[cubic])
+    for i in range(2):
+        out[~cubic, i] = (m[i, 0] * rows[:, 0] + m[i, 1] * rows[:, 1] + shift[:, i])[~cubic]
+    arc, ellipse = kind == Kind.ARC, kind == Kind.ELLIPSE
+    p, e = rows[arc], rows[ellipse]
+    if similar:
+        size, turn = float(np.sqrt(m[0, 0] ** 2 + m[1, 0] ** 2)), float(np.arctan2(m[1, 0], m[0, 0]))
+        side = 1.0 if float(np.linalg.det(m)) > 0.0 else -1.0
+        out[arc, 2:5] = np.stack([size * p[:, 2], side * p[:, 3] + turn, side * p[:, 4]], axis=1)
+        parts = (size * e[:, 2], size * e[:, 3], side * e[:, 4] + turn, side * e[:, 5], side * e[:, 6])
+        out[ellipse, 2:7] = np.stack(parts, axis=1)
+        return kind, out
+    still = np.zeros(len(p))
+    out[arc, 2:7] = np.stack(mapped_conics(p[:, 2], p[:, 2], still, p[:, 3], p[:, 4], m), axis=1)
+    out[ellipse, 2:7] = np.stack(mapped_conics(e[:, 2], e[:, 3], e[:, 4], e[:, 5], e[:, 6], m), axis=1)
+    return np.where(arc, np.uint8(Kind.ELLIPSE), kind), out
+
+
+def _cubics(rows: Floats, m: Floats, shift: Floats) -> Floats:
+    """Rows of mapped cubics: m, Shape (k, k), k = 2 or 3;  shift, Shape (n, k): added to the constants [mm]."""
+    out = np.zeros_like(rows)
+    k = len(m)
+    for i in range(k):
+        for j in range(k):
+            out[:, 4 * i : 4 * i + 4] += m[i, j] * rows[:, 4 * j : 4 * j + 4]
+        out[:, 4 * i] += shift[:, i]
     return out
 
 
-def swap_sides(
-    mark: np.ndarray[tuple[int], np.dtype[np.uint16]],
-) -> np.ndarray[tuple[int], np.dtype[np.uint16]]:
+def _matrix(text: str) -> tuple[Floats, Floats]:
+    """The matrix, Shape (3, 3), and the translation, Shape (3,) [mm], of the parameter; UsageError if it is none."""
+    if not text:
+        return np.eye(3), np.zeros(3)
+    try:
+        rows = [[float(number) for number in row.split()] for row in text.split(";")]
+    except ValueError:
+        rows = []
+    if [len(row) for row in rows] not in ([3, 3, 3], [4, 4, 4]) or not np.isfinite(rows).all():
+        raise UsageError(f"matrix={text}: write three rows of 3 or 4 numbers, as in 0 -1 0; 1 0 0; 0 0 1")
+    full = np.array([[*row, 0.0][:4] for row in rows])
+    return full[:, :3], full[:, 3]
+
+
+def swap_sides(mark: Words) -> Words:
     """Marks with left and right of tool radius correction exchanged."""
     left, right = mark & int(Mark.TOOL_LEFT), mark & int(Mark.TOOL_RIGHT)
     swapped = mark & ~np.uint16(_SIDES)
