@@ -13,9 +13,6 @@ from hypothesis import strategies as st
 from nccompile import kernels
 from nccompile.machine.model import default_machine
 from nccompile.passes.velocity import Planner, PlanSettings, plan, row_times
-from nccompile.runtime.task import CyclicTask
-from nccompile.source import Source
-from nccompile.toolchain import Compilation, Options
 from nccompile.toolpath.columns import Kind, Toolpath
 from tests.velocity.random_paths import Builder, cut, paths
 
@@ -174,14 +171,3 @@ def test_dwell_time_counts() -> None:
     build.line(10, 0.0, 20)
     build.still(Kind.DWELL, seconds=0.7)
     assert row_times(planned(build.path()), 0.0)[1] == pytest.approx(0.7)
-
-
-def test_a_spline_that_turns_back_is_crept_through() -> None:
-    # G5 points on a line, back and forth: the cubics have cusps, where the curvature has no limit
-    text = "% c\nN10 G1 X1 F20\nN20 G5 X10\nN30 G5 X0\nN40 G5 X10\nN50 G1 X5\n"
-    machine = default_machine()
-    for planner in ("look-ahead", "jerk"):
-        job = Compilation(Source("c.nc", text), Options(machine, planner=planner, verify=True))
-        report = CyclicTask(job.planned(), machine).run()
-        assert not job.diagnostics.errors
-        assert report.outcome == "finished"

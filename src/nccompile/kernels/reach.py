@@ -161,9 +161,12 @@ def _along(lines: Floats, number: int, k: int) -> tuple[float, float, int]:
 
 @kernel
 def _fill(
-    d1: Floats, d2: Floats, length: float, bound: float, share: float, a_axis: Floats, lines: Floats
+    d1: Floats, d2: Floats, length: float, bound: float, share: float, a_axis: Floats, moved: float, lines: Floats
 ) -> int:  # fmt: skip
-    """Constraints a w + b x <= c of an interval: axes at both ends, |u| <= bound; all have c = 1."""
+    """Constraints a w + b x <= c of an interval: axes at both ends, |u| <= bound; all have c = 1.
+
+    moved: 1 where the end has x + w, 0 where it has x too.
+    """
     number = 0
     for a in range(3):
         for end in range(2):
@@ -171,7 +174,7 @@ def _fill(
                 slope = d1[end, a] / (2.0 * length * share * a_axis[a])
                 bend = d2[end, a] / (share * a_axis[a])
                 if end == 1:
-                    slope += bend
+                    slope += moved * bend
                 if slope != 0.0 or bend != 0.0:
                     lines[number, 0], lines[number, 1], lines[number, 2] = slope, bend, 1.0
                     lines[number + 1, 0], lines[number + 1, 1], lines[number + 1, 2] = -slope, -bend, 1.0
@@ -203,7 +206,7 @@ def _controllable(
     """
     lines[0, 0], lines[0, 1], lines[0, 2] = 0.0, 1.0 / cap, 1.0
     lines[1, 0], lines[1, 1], lines[1, 2] = -1.0, -1.0, 0.0
-    number = 2 + _fill(d1, d2, length, bound, share, a_axis, lines[2:])
+    number = 2 + _fill(d1, d2, length, bound, share, a_axis, 1.0, lines[2:])
     lines[number, 0], lines[number, 1], lines[number, 2] = 1.0, 1.0, after
     x, w = cap, -cap
     free = 1
@@ -254,10 +257,11 @@ def backward(
 
 @kernel
 def _highest(
-    d1: Floats, d2: Floats, length: float, bound: float, share: float, a_axis: Floats, x: float, lines: Floats
-) -> tuple[float, float]:
-    """(least, greatest) w of an interval at x."""
-    number = _fill(d1, d2, length, bound, share, a_axis, lines)
+    d1: Floats, d2: Floats, length: float, bound: float, share: float, a_axis: Floats, x: float, moved: float,
+    lines: Floats,
+) -> tuple[float, float]:  # fmt: skip
+    """(least, greatest) w of an interval at x; moved as in `_fill`."""
+    number = _fill(d1, d2, length, bound, share, a_axis, moved, lines)
     low, high = -inf, inf
     for k in range(number):
         a = lines[k, 0]
@@ -289,7 +293,7 @@ def forward(
             if d1[i, 0, 0] == 0.0 and d1[i, 0, 1] == 0.0 and d1[i, 0, 2] == 0.0:
                 top = x + 2.0 * bound[i] * length[i]
             else:
-                _, high = _highest(d1[i], d2[i], length[i], bound[i], share[i], a_axis, x, lines)
+                _, high = _highest(d1[i], d2[i], length[i], bound[i], share[i], a_axis, x, 1.0, lines)
                 top = max(x + high, 0.0)
         x = min(reach[i], top)
         reach[i] = x
@@ -300,10 +304,10 @@ def ramps(
     d1: Floats, d2: Floats, length: Floats, bound: Floats, share: Floats, a_axis: Floats, before: float, x_end: Floats,
     accel: Floats, decel: Floats,
 ) -> None:  # fmt: skip
-    """Writes accel and decel (m,): the planned u, and what is safe at any x up to the planned one for the other.
+    """Writes accel and decel (m,): the planned u, or more where that is safe at any x up to the planned one.
 
-    What is safe at x = 0 and at the planned x is safe between, since the limits are convex.  The planned u is kept
-    to the bit, as a shorter ramp would have more x inside the interval; only a very small one is raised.
+    What is safe at x = 0 and at the greater x of both ends is safe between, since the limits are convex: then the
+    ramp is shorter than the interval, which runs on at its greatest x.
     """
     lines = np.empty((_CONSTRAINTS, 3))
     x = before
@@ -315,12 +319,11 @@ def ramps(
             else:
                 once = 2.0 * length[i]
                 u = (x_end[i] - x) / once
-                _, most = _highest(d1[i], d2[i], length[i], bound[i], share[i], a_axis, 0.0, lines)
+                _, most = _highest(d1[i], d2[i], length[i], bound[i], share[i], a_axis, 0.0, 0.0, lines)
                 low, high = _highest(
-                    d1[i], d2[i], length[i], bound[i], share[i], a_axis, max(x, x_end[i]), lines
+                    d1[i], d2[i], length[i], bound[i], share[i], a_axis, max(x, x_end[i]), 0.0, lines
                 )
-                least = _FLOOR * most / once
-                safe = max(min(most, high, -low) / once, least)
-                accel[i] = max(u, least) if u > 0.0 else safe
-                decel[i] = max(-u, least) if u < 0.0 else safe
+                safe = max(min(most, high, -low), _FLOOR * most) / once
+                accel[i] = max(safe, u)
+                decel[i] = max(safe, -u)
         x = x_end[i]

@@ -3,7 +3,7 @@
     in    decoded chunks
     out   the same path; a cubic that turns back on itself is two rows with a junction of 180 degrees, and a curve
           that would be run at its tightest bend's velocity throughout is a row for each velocity; for the
-          planner `time-optimal` every curve is rows that turn by at most 1.5 degrees
+          planner `time-optimal` every curve is rows that turn by at most 1.25 degrees
 
 What is cut where: `kernels.curve_parts`.  Rows with an S-profile stay whole (docs/decisions/054).
 """
@@ -32,7 +32,7 @@ _GAIN = 0.1
 _WORK = 20
 """What a curve costs, in the units of `expect_work`."""
 
-_TURN = radians(1.5)
+_TURN = radians(1.25)
 """Greatest turn of a part where the planner follows the curve: time within 1 % of the optimum (docs/planning.md)."""
 
 _AXES = {Plane.XY: (0, 1), Plane.ZX: (2, 0), Plane.YZ: (1, 2), Plane.SPACE: (0, 1, 2)}

@@ -27,7 +27,7 @@ __all__ = ["fastest"]
 
 Flags = npt.NDArray[np.bool_]
 
-_WORK = 20
+_WORK = 12
 """What a curved row costs, in the units of `expect_work`: rows of a plain plan."""
 
 _SLACK = 1e-6
