@@ -37,11 +37,12 @@ Ints = npt.NDArray[np.int32]
 PIECES = 4
 """Greatest number of pieces of a row: rise, hold, ease, cruise."""
 
-_SAFE, _CUT, _TOO_FAST, _LESS_JERK = 0, 1, 2, 3
+_SAFE, _CUT, _TOO_FAST, _TOO_STEEP, _LESS_JERK = 0, 1, 2, 3, 4
 
 _TINY = 1e-11  # of a row's length: places that are nearer to each other are one
 _SAME = 1e-12  # relative: velocities that differ by less are one
-_HALVINGS = 60
+_ROUNDED = 1e-9  # relative: by how much an ease may miss the velocity of its end
+_STEPS = 60
 _JERK_STEP = (
     0.8  # a ramp is started anew with at most this share of its jerk, so that there are few such starts
 )
@@ -87,34 +88,100 @@ def ease_length(v: float, a: float, jerk: float) -> float:
 def _check(
     length: Floats, top: Floats, node: Floats, accel: Floats, jerk_row: Floats, i: int, x: float, v: float,
     a: float, jerk: float, cut: int,
-) -> tuple[int, int]:  # fmt: skip
-    """(what an ease from (v, a) at the place x of row i meets first, the row where it does)."""
+) -> tuple[int, int, float]:  # fmt: skip
+    """What an ease from (v, a) at the place x of row i meets first, in which row, and how far its end is from i."""
     level = v + a * a / (2.0 * jerk)
-    way = ease_length(v, a, jerk)
-    ahead = length[i] - x
+    way = x + ease_length(v, a, jerk)
+    end = length[i]
     r = i
     while True:
-        if way <= ahead:
-            if r != cut and level > node[r]:
-                return _CUT, r
-            return (_TOO_FAST if level > top[r] else _SAFE), r
+        if way <= end:
+            if r != cut and level > node[r] * (1.0 + _SAME):
+                return _CUT, r, end
+            return (_TOO_FAST if level > top[r] * (1.0 + _SAME) else _SAFE), r, end
         cap = top[r] if r == cut else node[r]
-        if level > cap:
+        if level > cap * (1.0 + _SAME):
             if v >= cap:
-                return _TOO_FAST, r
+                return _TOO_FAST, r, end
             t = (a - sqrt(max(a * a - 2.0 * jerk * (cap - v), 0.0))) / jerk
-            if t * (v + t * (0.5 * a - t * jerk / 6.0)) < ahead:
-                return _TOO_FAST, r
+            if x + t * (v + t * (0.5 * a - t * jerk / 6.0)) < end * (1.0 - _SAME):
+                return _TOO_FAST, r, end
         if r == cut:
-            return _SAFE, r
+            return _SAFE, r, end
         if accel[r + 1] < a:
             t = (a - accel[r + 1]) / jerk
-            if t * (v + t * (0.5 * a - t * jerk / 6.0)) > ahead:
-                return _TOO_FAST, r
+            if x + t * (v + t * (0.5 * a - t * jerk / 6.0)) > end * (1.0 + _SAME):
+                return _TOO_STEEP, r, end
         if jerk_row[r + 1] < jerk:
-            return _LESS_JERK, r + 1
+            return _LESS_JERK, r + 1, end
         r += 1
-        ahead += length[r]
+        end += length[r]
+
+
+@kernel
+def _level_time(level: float, t_rise: float, v: float, a: float, a_top: float, jerk: float) -> float:
+    """The time of a rise after which an ease reaches `level`, 0 if it does already."""
+    peak = sqrt(max(jerk * (level - v) + 0.5 * a * a, 0.0))
+    if peak <= a_top:
+        return max(peak - a, 0.0) / jerk
+    v_rise = v + t_rise * (a + 0.5 * jerk * t_rise)
+    return t_rise + max(level - 0.5 * a_top * a_top / jerk - v_rise, 0.0) / a_top
+
+
+@kernel
+def _too_far(
+    steep: bool,
+    t: float,
+    value: float,
+    end: float,
+    t_rise: float,
+    v: float,
+    a: float,
+    a_top: float,
+    jerk: float,
+) -> float:
+    """How far before `end` an ease after a rise of t reaches the velocity `value`, if steep, how far behind it the
+    acceleration `value`; a rise that is short enough has it below 0."""
+    _, _, a1, way, v1 = _rise(t, t_rise, v, a, a_top, jerk)
+    if steep:
+        u = max(a1 - value, 0.0) / jerk
+    else:
+        u = (a1 - sqrt(max(a1 * a1 - 2.0 * jerk * (value - v1), 0.0))) / jerk
+    at = way + u * (v1 + u * (0.5 * a1 - u * jerk / 6.0))
+    return at - end if steep else end - at
+
+
+@kernel
+def _last_time(
+    steep: bool, low: float, high: float, value: float, end: float, t_rise: float, v: float, a: float, a_top: float,
+    jerk: float,
+) -> float:  # fmt: skip
+    """The longest rise between `low` and `high` whose ease has `value` at `end`: regula falsi (Illinois)."""
+    f_low = _too_far(steep, low, value, end, t_rise, v, a, a_top, jerk)
+    f_high = _too_far(steep, high, value, end, t_rise, v, a, a_top, jerk)
+    if f_low >= 0.0:
+        return low
+    side = 0
+    for _ in range(_STEPS):
+        if high - low <= 1e-15 * high:
+            break
+        t = (low * f_high - high * f_low) / (f_high - f_low)
+        if not low < t < high:
+            t = 0.5 * (low + high)
+        f = _too_far(steep, t, value, end, t_rise, v, a, a_top, jerk)
+        if f <= 0.0:
+            low, f_low = t, f
+            if f >= -_SAME * end:
+                break
+            if side == 1:
+                f_high *= 0.5
+            side = 1
+        else:
+            high, f_high = t, f
+            if side == -1:
+                f_low *= 0.5
+            side = -1
+    return low
 
 
 @kernel
@@ -185,12 +252,8 @@ def march(
             a_top = max(float(accel[i]), a)
             t_rise = (a_top - a) / jerk
             # The rise that an ease follows up to the row's cap, if both end in the row.
-            peak = sqrt(max(jerk * (cap - v) + 0.5 * a * a, 0.0))
             v_rise = v + t_rise * (a + 0.5 * jerk * t_rise)
-            if peak <= a_top:
-                t = max(peak - a, 0.0) / jerk
-            else:
-                t = t_rise + max(cap - 0.5 * a_top * a_top / jerk - v_rise, 0.0) / a_top
+            t = _level_time(cap, t_rise, v, a, a_top, jerk)
             d1, v1, a1, d2, v2 = _rise(t, t_rise, v, a, a_top, jerk)
             if d2 + ease_length(v2, a1, jerk) <= run:
                 ease_to = i
@@ -204,30 +267,39 @@ def march(
                     whole = t_rise + 2.0 * (run - d_rise) / (
                         v_rise + sqrt(v_rise * v_rise + 2.0 * a_top * (run - d_rise))
                     )
-                low, high, t = 0.0, whole, whole
-                for _ in range(_HALVINGS):
+                t = whole
+                for _ in range(_STEPS):
                     d1, v1, a1, d2, v2 = _rise(t, t_rise, v, a, a_top, jerk)
-                    what, where = _check(length, top, node, accel, jerk_row, i, d2, v2, a1, jerk, cut)
-                    if what == _CUT:
-                        cut = where
-                        high, t = whole, whole
-                        ease_to = -1
-                        continue
+                    what, where, end = _check(length, top, node, accel, jerk_row, i, d2, v2, a1, jerk, cut)
                     if what == _LESS_JERK:
                         less = float(jerk_row[where])
-                        break
-                    if what == _SAFE:
-                        low = t
-                    else:
-                        high = t
+                    elif what == _CUT:
+                        cut = where
+                        t, ease_to = whole, -1
+                        continue
+                    elif what == _TOO_STEEP:
+                        value = float(accel[where + 1])
+                        low = min(max(value - a, 0.0) / jerk, t)
+                        t = _last_time(True, low, t, value, end, t_rise, v, a, a_top, jerk)
                         ease_to = where
-                    if low == whole:
-                        break
-                    t = 0.5 * (low + high)
-                d1, v1, a1, d2, v2 = _rise(low, t_rise, v, a, a_top, jerk)
-                if low == whole:
+                        continue
+                    elif what == _TOO_FAST:
+                        value = float(top[where] if where == cut else node[where])
+                        low = min(_level_time(value, t_rise, v, a, a_top, jerk), t)
+                        _, _, a1, d2, v2 = _rise(low, t_rise, v, a, a_top, jerk)
+                        inside = d2 + ease_length(v2, a1, jerk) <= end
+                        if inside and where != cut:
+                            cut = where
+                            t, ease_to = whole, -1
+                            continue
+                        t_high, t = t, low
+                        if not inside:
+                            t = _last_time(False, low, t_high, value, end, t_rise, v, a, a_top, jerk)
+                        ease_to = where
+                        continue
+                    break
+                if t == whole:
                     d2 = run
-                    ease_to = -1
             if less >= jerk:
                 if d1 > _TINY * run:
                     x = min(d1, run)
@@ -264,9 +336,12 @@ def march(
                 _put(pieces, count, run, v, 0.0, 0.0)
                 count += 1
         pieces[count - 1, 0] = run
-        if cut == i or v > node[i] * (1.0 + _SAME):
+        if cut == i or v > node[i] * (1.0 + _ROUNDED):
             cut = -1
             ease_to = -1
             v, a = float(node[i]), 0.0
+        elif v > node[i]:
+            v = float(node[i])
+            pieces[count - 1, 1] = v
         i += 1
     first[n] = count
