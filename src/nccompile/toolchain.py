@@ -99,7 +99,7 @@ class Compilation:
     def time_law(self) -> str:
         """The velocity profile that is planned."""
         if self.options.planner == TIME_OPTIMAL:
-            return "trapezoid"  # it uses all of the acceleration: a sigmoid would exceed it
+            return "trapezoid"  # it uses all of the acceleration: another law would exceed it
         return self.options.time_law or self.options.machine.path.time_law
 
     @property

@@ -76,7 +76,11 @@ def test_defaults_need_only_name_and_axes() -> None:
         ("[axes.Z]", "[axes.ZZ]", "axes.ZZ: axes are named by one letter of X Y Z A B C P Q U V W"),
         ("[axes.Z]", "[axxes.Z]", "axxes: unknown key; did you mean axes?"),
         ('type = "gantry"', 'type = "delta"', 'kinematics.type: expected "gantry", found "delta"'),
-        ('"trapezoid"', '"square"', 'path.time_law: expected "trapezoid" or "sigmoid", found "square"'),
+        (
+            '"trapezoid"',
+            '"square"',
+            'path.time_law: expected "trapezoid", "sigmoid" or "parabolic", found "square"',
+        ),
         (
             "lag = 0.005",
             "lag = 1",

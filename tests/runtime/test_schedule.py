@@ -40,7 +40,7 @@ def test_commands_are_read(text: str, command: Command) -> None:
         ("1s override=nan", '"nan" in "1s override=nan" is not a number from 0.01 to 10'),
         ("1s override=fast", "is not a number"),
         ("1s slow_stop=maybe", '"maybe" in "1s slow_stop=maybe" is not one of on, true, 1, off, false, 0'),
-        ("1s vel_mode=2", "is not one of trapezoid, 0, sigmoid, 1"),
+        ("1s vel_mode=3", "is not one of trapezoid, 0, sigmoid, 1, parabolic, 2"),
     ],
 )
 def test_everything_else_is_refused(text: str, said: str) -> None:

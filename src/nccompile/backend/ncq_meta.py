@@ -19,14 +19,14 @@ from typing import Any
 from nccompile.backend.ncq_layout import Counts
 from nccompile.backend.totals import Totals
 from nccompile.errors import QueueError
+from nccompile.kernels.timelaw import LAW_NAMES
 from nccompile.toolpath import AXIS_LETTERS
 from nccompile.version import VERSION
 
-__all__ = ["FORMAT", "FORMAT_VERSION", "TIME_LAWS", "Meta", "Provenance"]
+__all__ = ["FORMAT", "FORMAT_VERSION", "Meta", "Provenance"]
 
 FORMAT = "nccompile-outqueue"
 FORMAT_VERSION = 1
-TIME_LAWS = ("trapezoid", "sigmoid")
 UNITS = {"length": "mm", "rotary": "deg", "velocity": "mm/s", "acceleration": "mm/s2", "time": "s"}
 
 _GREATEST_ROW_COUNT = 2**31 - 1
@@ -38,7 +38,7 @@ class Provenance:
 
     source, machine: names without folders, so that equal inputs give equal bytes wherever they lie;
     the SHA-256 are those of the program's bytes and of the machine's canonical JSON;
-    angle_tolerance [deg]; time_law: one of `TIME_LAWS`.
+    angle_tolerance [deg]; time_law: one of `LAW_NAMES`.
     """
 
     source: str
@@ -112,7 +112,7 @@ class Meta:
         if tuple(start) != axes or content["units"] != UNITS:
             raise ValueError("start or units do not fit the axes")
         planning = content["planning"]
-        if planning["time_law"] not in TIME_LAWS:
+        if planning["time_law"] not in LAW_NAMES:
             raise ValueError(f"time law {planning['time_law']}")
         source, machine = content["source"], content["machine"]
         return cls(

@@ -50,6 +50,7 @@ class TimeLaw(StrEnum):
 
     TRAPEZOID = "trapezoid"
     SIGMOID = "sigmoid"
+    PARABOLIC = "parabolic"
 
 
 class PlannerName(StrEnum):

@@ -7,9 +7,10 @@
    v0 |___/
       +---------------------- t
 
-Two laws share the times: a trapezoid ramp changes v linearly, a sigmoid ramp as sin².  A sigmoid ramp from
-va to vb in T covers (va + vb) T / 2 as the linear one does, so both laws take the same time for the same path;
-the sigmoid's acceleration is continuous and peaks at pi/2 times the linear one.
+Three laws share the times: a trapezoid ramp changes v linearly, a sigmoid ramp as sin², a parabolic one as
+3 x² - 2 x³, whose acceleration is a parabola (SoftMotion §2.1.2).  Every one covers (va + vb) T / 2 from va to vb in
+T, so all laws take the same time for the same path; the acceleration of the sigmoid is continuous and peaks at pi/2
+times the linear one, that of the parabolic one at 3/2 times.
 
 The offline sampler and the cyclic interpolator evaluate these functions, so they agree to the bit.
 Own derivation from s' = v, v' = a.
@@ -22,6 +23,8 @@ from math import pi, sin, sqrt
 from nccompile.kernels import kernel
 
 __all__ = [
+    "LAW_NAMES",
+    "PARABOLIC",
     "SIGMOID",
     "TRAPEZOID",
     "jerk_distance",
@@ -35,14 +38,20 @@ __all__ = [
 
 TRAPEZOID = 0
 SIGMOID = 1
+PARABOLIC = 2
+
+LAW_NAMES = ("trapezoid", "sigmoid", "parabolic")
+"""The laws by the names that machine file, command line and queue use, in the order of their numbers."""
+
+_PEAKS = (1.0, pi / 2.0, 1.5)
 
 _SLACK = 1e-9
 """Relative rounding room in v² within which a ramp over the whole segment counts as the planned one."""
 
 
 def peak_factor(law: int) -> float:
-    """Greatest acceleration of a ramp over its mean: 1 for the trapezoid, pi/2 for the sigmoid."""
-    return pi / 2.0 if law == SIGMOID else 1.0
+    """Greatest acceleration of a ramp over its mean: 1 for the trapezoid, pi/2 for the sigmoid, 3/2 parabolic."""
+    return _PEAKS[law]
 
 
 @kernel
@@ -90,11 +99,15 @@ def _ramp_distance(law: int, t: float, duration: float, va: float, vb: float) ->
 
     trapezoid  s = va t + (vb - va) t² / (2 T)
     sigmoid    s = va t + (vb - va) (t / 2 - T / (2 pi) sin(pi t / T))
+    parabolic  s = va t + (vb - va) T (x³ - x⁴ / 2),  x = t / T
     """
     if duration <= 0.0:
         return 0.0
     if law == SIGMOID:
         return va * t + (vb - va) * (0.5 * t - duration / (2.0 * pi) * sin(pi * t / duration))
+    if law == PARABOLIC:
+        x = t / duration
+        return va * t + (vb - va) * duration * x * x * x * (1.0 - 0.5 * x)
     return va * t + (vb - va) * t * t / (2.0 * duration)
 
 
@@ -130,6 +143,8 @@ def law_velocity(
     if law == SIGMOID:
         root = sin(0.5 * pi * part)
         return va + (vb - va) * root * root
+    if law == PARABOLIC:
+        return va + (vb - va) * part * part * (3.0 - 2.0 * part)
     return va + (vb - va) * part
 
 

@@ -89,7 +89,7 @@ class PathDefaults(_Section):
         default=None, gt=0, le=_ACCELERATION_MAX, json_schema_extra=_unit("mm/s²")
     )
     """Greatest jump of it where the curvature jumps [mm/s²] (§6.2.7, dMaxAccJump); no limit without the key."""
-    time_law: Literal["trapezoid", "sigmoid"] = "trapezoid"
+    time_law: Literal["trapezoid", "sigmoid", "parabolic"] = "trapezoid"
     """Velocity profile (SoftMotion §6.2.8)."""
     max_switches: int = Field(default=8, ge=1, le=1000, json_schema_extra=_unit("switch points"))
     """Switch points (H) that one segment can carry."""

@@ -50,7 +50,7 @@ class Inputs:
     wait_at_next_stop: wait where the path stops anyway [bWaitAtNextStop]
     single_step: stop for one cycle at the end of every segment [bSingleStep]
     override: factor on the commanded velocities, taken over outside ramps [dOverride]
-    vel_mode: time law, 0 trapezoid, 1 sigmoid, taken over outside ramps [iVelMode]
+    vel_mode: time law, 0 trapezoid, 1 sigmoid, 2 parabolic, taken over outside ramps [iVelMode]
     ack_m: acknowledges the waiting M function [bAcknM]
     abort: gives the path up [bAbort]
     last_way_pos: way already counted [mm], see Outputs.way_pos [dLastWayPos]

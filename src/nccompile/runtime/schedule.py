@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from nccompile.errors import UsageError
+from nccompile.kernels.timelaw import LAW_NAMES
 from nccompile.runtime.interpolator import OVERRIDE_MAX, OVERRIDE_MIN, Inputs
 
 __all__ = ["Command", "Schedule", "parse_command"]
@@ -26,7 +27,7 @@ _NUMBERS = {
     "last_way_pos": (-1e12, 1e12, " mm"),
 }
 _ON_OFF = {"on": True, "true": True, "1": True, "off": False, "false": False, "0": False}
-_MODES = {"trapezoid": 0, "0": 0, "sigmoid": 1, "1": 1}
+_MODES = {spelling: law for law, name in enumerate(LAW_NAMES) for spelling in (name, str(law))}
 _SHAPE = re.compile(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(s|ms)?\s+([A-Za-z_]+)\s*=\s*(\S+)\s*")
 
 

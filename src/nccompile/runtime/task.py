@@ -21,7 +21,7 @@ from nccompile.diagnostics import Diagnostic, Severity
 from nccompile.kernels import expect_work
 from nccompile.kernels import interpolator as k
 from nccompile.kernels.stepper import BURST, Burst
-from nccompile.kernels.timelaw import SIGMOID, TRAPEZOID
+from nccompile.kernels.timelaw import LAW_NAMES
 from nccompile.kinematics import build
 from nccompile.machine.limits import limits
 from nccompile.machine.model import Machine
@@ -126,7 +126,7 @@ class CyclicTask:
 
     def _set_inputs(self) -> None:
         """The inputs that hold before the first command."""
-        law = SIGMOID if self.machine.path.time_law == "sigmoid" else TRAPEZOID
+        law = LAW_NAMES.index(self.machine.path.time_law)
         inputs = self.interpolator.inputs
         inputs.override = self.options.override
         inputs.vel_mode = law if self.options.vel_mode is None else self.options.vel_mode

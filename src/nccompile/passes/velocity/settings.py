@@ -9,7 +9,7 @@ from math import inf, pi, radians
 import numpy as np
 
 from nccompile.kernels.corners import NO_DEVIATION, PARABOLA
-from nccompile.kernels.timelaw import SIGMOID, TRAPEZOID
+from nccompile.kernels.timelaw import LAW_NAMES, TRAPEZOID
 from nccompile.machine.limits import AxisLimits, limits
 from nccompile.machine.model import Machine
 from nccompile.units import seconds_from_us
@@ -27,7 +27,7 @@ PLANNERS = (SOFTMOTION, LOOK_AHEAD, JERK, TIME_OPTIMAL)
 WINDOW = 30_000
 """Rows that a row's end velocity may depend on (as many blocks as INTERP looks ahead, §1.7)."""
 
-LAWS = {"trapezoid": TRAPEZOID, "sigmoid": SIGMOID}
+LAWS = {name: law for law, name in enumerate(LAW_NAMES)}
 """Time laws by the name that machine file, command line and queue use."""
 
 
