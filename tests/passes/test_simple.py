@@ -11,17 +11,20 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from nccompile.errors import UsageError
+from nccompile.machine.model import default_machine
 from nccompile.passes.compress import Compress
 from nccompile.passes.flatten import Flatten
 from nccompile.passes.limit_arc_feed import LimitArcFeed
 from nccompile.passes.measure import samples
 from nccompile.passes.move_start import MoveStart
 from nccompile.passes.reverse import Reverse
-from nccompile.passes.split import Split, place_at
+from nccompile.passes.split import Split
 from nccompile.passes.transform import Transform
+from nccompile.passes.velocity import PLANNERS, plan
+from nccompile.passes.velocity.settings import PlanSettings
 from nccompile.toolpath.columns import Kind, Mark, Plane, Toolpath
 from tests.passes.every import dense
-from tests.passes.paths import Sketch, paths, run, same
+from tests.passes.paths import Probe, Sketch, paths, run, same
 
 
 def test_compress_merges_collinear_lines_of_equal_feed() -> None:
@@ -101,6 +104,47 @@ def test_limit_arc_feed_slows_junctions_by_the_jump_of_curvature() -> None:
     assert np.array_equal(out.end, path.end)
 
 
+def test_limit_arc_feed_on_a_helix_and_between_planes() -> None:
+    helix = Sketch().arc(3.0, 2.0, dz=6.0, feed=100).path()
+    out, _ = run(LimitArcFeed(accel=100.0), helix)
+    assert out.feed[0] == pytest.approx(sqrt(100.0 * (3.0**2 + (6.0 / 2.0) ** 2) / 3.0))  # k = r / (r² + c²)
+    upright = run(Transform(matrix="1 0 0; 0 0 -1; 0 1 0"), Sketch().arc(4.0, 1.0, feed=100).path())[0]
+    flat = Sketch().arc(4.0, -1.0, feed=100).path()
+    flat = run(Transform(rotate=-np.degrees(1.0)), run(Reverse(), flat)[0])[0]
+    move = upright.start - flat.end
+    flat = run(Transform(x=move[0], y=move[1], z=move[2]), flat)[0]
+    both, report = run(LimitArcFeed(jump=100.0), Toolpath.join([flat, upright]))
+    assert report.counts["junctions slowed"] == 1
+    k0, k1 = Probe(flat, 0).curvature(flat.length[0]), Probe(upright, 0).curvature(0.0)
+    assert both.feed.min() == pytest.approx(sqrt(100.0 / np.linalg.norm(k1 - k0)))
+    assert both.feed.min() != pytest.approx(sqrt(100.0 / 0.5))
+
+
+@pytest.mark.parametrize("planner", PLANNERS)
+def test_planned_velocities_keep_the_limits_of_arcs_and_their_ends(planner: str) -> None:
+    path = (
+        Sketch()
+        .to(10, 0, feed=100)
+        .arc(4.0, 1.0, feed=100)
+        .arc(4.0, -1.0, feed=100)
+        .to(30, 9, feed=100)
+        .path()
+    )
+    limited, _ = run(LimitArcFeed(jump=100.0, accel=300.0), path)
+    settings = PlanSettings.from_machine(
+        default_machine(), path.axes, angle_tolerance_deg=180.0, time_law="trapezoid", planner=planner, window=None,
+        junction_deviation=None,
+    )  # fmt: skip
+    out = Toolpath.join(list(plan([limited], settings)))
+    assert out.v_end is not None
+    at = np.cumsum(out.length)
+    for place, most in zip(np.cumsum(path.length), (sqrt(400.0), sqrt(200.0)), strict=False):
+        row = int(np.argmin(np.abs(at - place)))
+        assert out.v_end[row] <= most * (1 + 1e-9)
+    arcs = out.kind == Kind.ARC
+    assert out.v_end[arcs].max() <= sqrt(300.0 * 4.0) * (1 + 1e-9)
+
+
 def test_a_feed_that_is_not_programmed_is_limited_too() -> None:
     path = Sketch().arc(1.0, 1.0, feed=0.0).path()
     assert run(LimitArcFeed(accel=25.0), path)[0].feed[0] == 5.0
@@ -136,9 +180,9 @@ def test_a_tilted_frame_keeps_the_tolerance(path: Toolpath, roll: float, yaw: fl
     for i in range(len(path)):
         if path.curve[i] >= 0:
             rows = np.flatnonzero(back.line == path.line[i])
-            middle = place_at(path, i, 0.37)
+            middle = Probe(path, i).point(0.37 * path.length[i])
             near = min(
-                float(np.linalg.norm(middle[:3] - q)) for q in samples(back.rows(rows[0], rows[-1] + 1))[0]
+                float(np.linalg.norm(middle - q)) for q in samples(back.rows(rows[0], rows[-1] + 1))[0]
             )
             assert near <= path.length[i] / 20 + 0.02
     assert np.abs(back.end - path.end).max() <= 1e-7

@@ -102,7 +102,7 @@ def leg_at(
     count: int, s: float, out: Floats,
 ) -> None:  # fmt: skip
     """Writes the state at s [mm] of a segment from a to b, with its table of `tabulate_leg`."""
-    share = s / length
+    share = s / length if length > 0.0 else 0.0
     if count == 0:
         size = 0.0
         for i in range(3):
@@ -112,7 +112,7 @@ def leg_at(
         for i in range(3):
             step = float(b[i]) - float(a[i])
             out[i] = float(a[i]) + share * step
-            out[3 + i] = step / size
+            out[3 + i] = step / size if size > 0.0 else 0.0
             out[6 + i] = 0.0
         return
     u = parameter_at(kind, p, nodes_u, nodes_s, count, share)
@@ -139,7 +139,7 @@ def leg_at(
         rise = float(b[third]) - float(a[third])
         z = float(a[third]) + share * rise
         tz = rise / inside if inside > 0.0 else 0.0
-        slant = inside / length
+        slant = inside / length if length > 0.0 else 1.0
     size = sqrt(tx * tx + ty * ty + tz * tz)
     if size > 0.0:
         tx /= size
@@ -231,6 +231,7 @@ def cut_legs(
         for c in range(3):
             out_ends[j, c] = state[c]
         if count:
-            u0 = parameter_at(kind, p, nodes_u, nodes_s, count, float(s0[j]) / whole)
-            u1 = parameter_at(kind, p, nodes_u, nodes_s, count, float(s1[j]) / whole)
+            scale = 1.0 / whole if whole > 0.0 else 0.0
+            u0 = parameter_at(kind, p, nodes_u, nodes_s, count, scale * float(s0[j]))
+            u1 = parameter_at(kind, p, nodes_u, nodes_s, count, scale * float(s1[j]))
             curve_piece(kind, p, u0, u1, out_rows[j])

@@ -109,6 +109,13 @@ class Links:
         return cls(i.astype(np.intp), p0.copy(), p1.copy(), r.astype(np.intp), q0.copy(), q1.copy())
 
     @classmethod
+    def moved(cls, row: Rows) -> Links:
+        """Every source row is the whole of the new row named for it, Shape (n,)."""
+        n = len(row)
+        zero, one = np.zeros(n), np.ones(n)
+        return cls(np.arange(n), zero, one, row, zero, one)
+
+    @classmethod
     def merged(cls, parts: Sequence[Links]) -> Links:
         """All links of several parts, in order."""
         segment, row = (

@@ -1,13 +1,13 @@
 """limit-arc-feed: bound the centripetal acceleration on arcs and its jump at their ends.
 
-    v² / r <= accel            =>  v <= sqrt(accel r)              on every arc
+    v² |k| <= accel            =>  v <= sqrt(accel / |k|)          on every arc, |k| = 1 / r
     v <= per_radius sqrt(r)                                        the same, by the velocity at radius 1
     v² |k1 - k2| <= jump       =>  v <= sqrt(jump / |k1 - k2|)     where a line or arc meets an arc
 
-                 k2 = 1/r           k: signed curvature, 0 on a line, + turns left.  At such a junction the
-               .-~                  last millimetre part of the first segment becomes a segment of its own
-    ─────────●'                     with the lower feed, so the path passes the junction at that velocity:
-      k1 = 0 ^ v_end                a decoded segment has no end velocity of its own.
+                 k2: to the      k: curvature vector, 0 on a line, cos² of its slope / r on a helix.  At such a
+               .-~   centre       junction the last hundredth of a millimetre of the first segment becomes a segment
+    ─────────●'                   of its own with the lower feed, so the path passes the junction at that velocity:
+      k1 = 0 ^ v_end              a decoded segment has no end velocity of its own.
 
 (SoftMotion §6.2.7, SMC_LimitCircularVelocities: dMaxAcc, dMaxAccJump, dVmaxPerRadiusUnit; 0 = no check.)
 
@@ -32,9 +32,11 @@ import numpy as np
 
 from nccompile.errors import UsageError
 from nccompile.passes.base import Context, Flags, Pass, bounded, gather
-from nccompile.passes.edit import Draft
-from nccompile.passes.split import part_of, place_at
+from nccompile.passes.edit import Rows
+from nccompile.passes.measure import deviation
+from nccompile.passes.split import split_rows
 from nccompile.toolpath.columns import Floats, Kind, Toolpath
+from nccompile.toolpath.lengths import PLANE_AXES
 
 __all__ = ["LimitArcFeed"]
 
@@ -74,73 +76,85 @@ class LimitArcFeed(Pass):
                 yield limited
                 continue
             held = limited if held is None else Toolpath.join([held, limited])
-            if len(held) > 1:
-                yield self._slowed(held, context)
-                held = held.rows(len(held) - 1, len(held))
+            counting = _counting(held)
+            last = int(counting[-1]) if len(counting) else 0
+            if last:
+                out = self._slowed(held, counting, context)
+                yield out.rows(0, len(out) - len(held) + last)
+                held = held.rows(last, len(held))
         if held is not None:
             yield held
 
     def _limited(self, path: Toolpath, context: Context) -> Toolpath:
         """The path with the feeds of its arcs limited."""
-        arcs = path.kind == Kind.ARC
+        arcs = (path.kind == Kind.ARC) & (path.length > 0.0)
         if not arcs.any():
             return path
-        radius = np.ones(len(path))
-        radius[arcs] = path.curves.parameters[path.curve[arcs], 2]
+        bend = _bend(path, np.flatnonzero(arcs))
         most = np.full(len(path), np.inf)
         if self.accel:
-            most = np.sqrt(self.accel * radius)
+            most[arcs] = np.sqrt(self.accel / bend)
         if self.per_radius:
-            most = np.minimum(most, self.per_radius * np.sqrt(radius))
-        default = self.feed or context.feed
-        now = np.where(path.feed > 0.0, path.feed, default if default > 0.0 else np.inf)
-        lower: Flags = arcs & (most < now)
+            most[arcs] = np.minimum(most[arcs], self.per_radius / np.sqrt(bend))
+        lower: Flags = arcs & (most < self._feeds(path, context))
         context.report.counts["feeds lowered"] += int(lower.sum())
         return path.replace(feed=np.where(lower, most, path.feed))
 
-    def _slowed(self, path: Toolpath, context: Context) -> Toolpath:
-        """All rows but the last, with slow ends before jumps of the curvature."""
-        n = len(path)
-        left = _signed_curvature(path)
-        step = np.abs(left[1:] - left[:-1])
-        moving = (path.kind >= Kind.LINE) & (path.kind <= Kind.ARC)
-        either = (path.kind[1:] == Kind.ARC) | (path.kind[:-1] == Kind.ARC)
-        step = np.where(moving[1:] & moving[:-1] & either, step, 0.0)
-        with np.errstate(divide="ignore"):
-            most = np.sqrt(self.jump / step)
+    def _feeds(self, path: Toolpath, context: Context) -> Floats:
         default = self.feed or context.feed
-        feeds = np.where(path.feed > 0.0, path.feed, default if default > 0.0 else np.inf)
-        slow = most < np.minimum(feeds[:-1], feeds[1:])
+        return np.where(path.feed > 0.0, path.feed, default if default > 0.0 else np.inf)
+
+    def _slowed(self, path: Toolpath, counting: Rows, context: Context) -> Toolpath:
+        """The path with slow ends before jumps of the curvature; counting: Shape (m,), rows that make junctions."""
+        one, two = counting[:-1], counting[1:]
+        step = _ends(path, two, 0.0) - _ends(path, one, 1.0)
+        size = np.sqrt(step[:, 0] * step[:, 0] + step[:, 1] * step[:, 1] + step[:, 2] * step[:, 2])
+        moving = (path.kind >= Kind.LINE) & (path.kind <= Kind.ARC)
+        size[~(moving[one] & moving[two])] = 0.0
+        with np.errstate(divide="ignore"):
+            most = np.sqrt(self.jump / size)
+        feeds = self._feeds(path, context)
+        slow = most < np.minimum(feeds[one], feeds[two])
         if not slow.any():
-            return path.rows(0, n - 1)
+            return path
         context.report.counts["junctions slowed"] += int(slow.sum())
-        draft = Draft(path.rows(0, n - 1))
-        for i in range(n - 1):
-            if slow[i]:
-                self._end(draft, i, float(most[i]))
-            else:
-                draft.copy(i)
-        return draft.build()
-
-    def _end(self, draft: Draft, i: int, feed: float) -> None:
-        """Row i, its last part at the lower feed."""
-        s = draft.source
-        length = float(s.length[i])
-        if length <= _SHORTEST or s.profile[i]:
-            draft.copy(i)
-            draft.feed[len(draft) - 1] = feed
-            return
-        at = 1.0 - min(_TAIL, 0.25 * length) / length
-        kind = int(s.kind[i])
-        draft.add(kind, place_at(s, i, at), part_of(s, i, 0.0, at), i, 0.0, at)
-        draft.add(kind, s.target[i], part_of(s, i, at, 1.0), i, at, 1.0)
-        draft.feed[len(draft) - 1] = feed
+        rows, most = one[slow], most[slow]
+        length = path.length[rows]
+        whole = (length <= _SHORTEST) | (path.profile[rows] != 0)
+        feed = path.feed.copy()
+        feed[rows[whole]] = most[whole]
+        rows, length = rows[~whole], length[~whole]
+        out, links, tails = split_rows(
+            path.replace(feed=feed), rows, length - np.minimum(_TAIL, 0.25 * length)
+        )
+        feed = out.feed.copy()
+        feed[tails] = most[~whole]
+        if context.measure:
+            context.report.deviate(deviation(path, out, links))
+        return out.replace(feed=feed)
 
 
-def _signed_curvature(path: Toolpath) -> Floats:
-    """1/r with the sign of the sweep on arcs, 0 on lines. Shape (n,)."""
-    out = np.zeros(len(path))
-    arcs = np.flatnonzero(path.kind == Kind.ARC)
+def _counting(path: Toolpath) -> Rows:
+    """The rows between which there are junctions: those that move, and stops and jumps, which part them."""
+    return np.flatnonzero((path.length > 0.0) | (path.kind > Kind.POLYNOMIAL))
+
+
+def _bend(path: Toolpath, arcs: Rows) -> Floats:
+    """The curvature [1/mm] of arcs: 1 / r, on a helix times the square of the slope's cosine."""
     p = path.curves.parameters[path.curve[arcs]]
-    out[arcs] = np.sign(p[:, 4]) / p[:, 2]
+    flat = p[:, 2] * np.abs(p[:, 4]) / path.length[arcs]
+    return np.asarray(flat * flat / p[:, 2])
+
+
+def _ends(path: Toolpath, rows: Rows, u: float) -> Floats:
+    """The curvature vectors [1/mm] of rows in X, Y, Z at their start (u = 0) or end (1); 0 but on arcs."""
+    out = np.zeros((len(rows), 3))
+    arcs = np.flatnonzero(path.kind[rows] == Kind.ARC)
+    curve = path.curve[rows[arcs]]
+    p, plane, bend = path.curves.parameters[curve], path.curves.plane[curve], _bend(path, rows[arcs])
+    angle = p[:, 3] + u * p[:, 4]
+    for at, axes in PLANE_AXES.items():
+        own = plane == at
+        out[arcs[own], axes[0]] = -(bend * np.cos(angle))[own]
+        out[arcs[own], axes[1]] = -(bend * np.sin(angle))[own]
     return out

@@ -30,7 +30,8 @@ import numpy as np
 from nccompile.errors import UsageError
 from nccompile.geometry.tolerance import COINCIDENT
 from nccompile.passes.base import Context, Pass
-from nccompile.passes.edit import Draft, is_motion
+from nccompile.passes.edit import Draft, Links, is_motion
+from nccompile.passes.measure import deviation
 from nccompile.toolpath.columns import Toolpath
 
 __all__ = ["MoveStart"]
@@ -62,7 +63,13 @@ class MoveStart(Pass):
             raise UsageError(f"move-start: the contour of segment {self.segment} is not closed")
         if first == 0:
             path = path.replace(start=path.starts()[i])
-        yield _rotated(path, first, i, last)
+        out = _rotated(path, first, i, last)
+        if context.measure:
+            count = last + 1 - first
+            links = Links.moved((np.arange(count) - (i - first)) % count)
+            before, after = (p.rows(first, last + 1) for p in (path, out))
+            context.report.deviate(deviation(before, after, links))
+        yield out
 
 
 def _rotated(path: Toolpath, first: int, i: int, last: int) -> Toolpath:

@@ -30,6 +30,8 @@ import numpy.typing as npt
 
 from nccompile.geometry.parts import reverse
 from nccompile.passes.base import Context, Pass
+from nccompile.passes.edit import Links
+from nccompile.passes.measure import deviation
 from nccompile.passes.transform import swap_sides
 from nccompile.toolpath.columns import Curves, Events, Kind, Mark, Toolpath
 from nccompile.toolpath.lengths import path_lengths
@@ -53,7 +55,11 @@ class Reverse(Pass):
 
     def rewrite(self, chunks: Iterator[Toolpath], context: Context) -> Iterator[Toolpath]:
         """See the module."""
-        yield reversed_path(Toolpath.join(list(chunks)))
+        path = Toolpath.join(list(chunks))
+        turned = reversed_path(path)
+        if context.measure:
+            context.report.deviate(deviation(path, turned, Links.moved(np.arange(len(path))[::-1])))
+        yield turned
 
 
 def reversed_path(path: Toolpath) -> Toolpath:
@@ -78,10 +84,7 @@ def reversed_path(path: Toolpath) -> Toolpath:
          float(e.k[j]), float(e.l[j]), int(e.o[j]))
         for j in range(len(e))
     ]  # fmt: skip
-    picked = {
-        name: getattr(path, name)[back]
-        for name in ("length", "feed", "accel", "decel", "radius", "profile", "line")
-    }
+    picked = {name: getattr(path, name)[back] for name in _COLUMNS}
     turned = path.replace(
         start=path.end, kind=kinds, target=path.starts()[back], curve=curve, mark=_marks(path)[back],
         curves=Curves(path.curves.plane[rows], p.reshape(-1, 12)), events=Events.from_rows(moved), **picked,

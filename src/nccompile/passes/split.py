@@ -3,7 +3,8 @@
     in    A ────────────────> B       out   A ──────> P ─────────> B      P at `at` of the way, e.g. 0.4
 
 Segments are counted from 1 in the path as it reaches this pass, or found by their source line: the first moving
-segment of that line is split.  Switch points keep their place.
+segment of that line is split.  Switch points keep their place.  A segment without length, or with an axis in the
+S-profile, cannot be split.
 
 Example:
     -p split{segment=1,at=0.25}
@@ -25,13 +26,13 @@ from typing import ClassVar
 import numpy as np
 
 from nccompile.errors import UsageError
-from nccompile.geometry.parts import Way, cut
-from nccompile.kernels.distance import place_on
+from nccompile.kernels.legs import cut_legs
 from nccompile.passes.base import Context, Pass, bounded
-from nccompile.passes.edit import Draft, Shape
-from nccompile.toolpath.columns import Floats, Kind, Toolpath
+from nccompile.passes.edit import Links, Rows, compose, geometry
+from nccompile.passes.measure import deviation
+from nccompile.toolpath.columns import CURVE_PARAMETERS, Curves, Floats, Kind, Toolpath
 
-__all__ = ["Split", "part_at", "part_of", "place_at", "position_at"]
+__all__ = ["Split", "split_rows"]
 
 
 @dataclass(frozen=True)
@@ -63,70 +64,59 @@ class Split(Pass):
                 yield chunk
                 continue
             done = True
-            yield _split(chunk, int(hits[0]), self.at)
+            yield self._split(chunk, hits[:1], context)
         if not done:
-            what = f"line {self.line}" if self.line else f"segment {self.segment}"
-            raise UsageError(f"split: the path has no moving segment for {what}")
+            raise UsageError(f"split: the path has no moving segment for {self._what}")
+
+    @property
+    def _what(self) -> str:
+        return f"line {self.line}" if self.line else f"segment {self.segment}"
+
+    def _split(self, path: Toolpath, row: Rows, context: Context) -> Toolpath:
+        if not 0.0 < self.at < 1.0:
+            return path
+        if path.profile[row].any() or not path.length[row].all():
+            raise UsageError(f"split: {self._what} has no length, or an axis in the S-profile")
+        out, links, _ = split_rows(path, row, self.at * path.length[row])
+        if context.measure:
+            context.report.deviate(deviation(path, out, links))
+        return out
 
 
-def _split(path: Toolpath, i: int, at: float) -> Toolpath:
-    if not 0.0 < at < 1.0:
-        return path
-    draft = Draft(path)
-    for j in range(len(path)):
-        if j != i:
-            draft.copy(j)
-            continue
-        for p0, p1 in ((0.0, at), (at, 1.0)):
-            target = place_at(path, i, p1)
-            draft.add(int(path.kind[i]), target, part_of(path, i, p0, p1), i, p0, p1)
-    return draft.build()
+def split_rows(path: Toolpath, picked: Rows, at: Floats) -> tuple[Toolpath, Links, Rows]:
+    """The path with some rows cut in two.
 
-
-def place_at(path: Toolpath, i: int, share: float) -> Floats:
-    """The position on all axes at a share 0..1 of the length of row i. Shape (k,)."""
-    start = path.start if i == 0 else path.target[i - 1]
-    end = path.target[i]
-    if share >= 1.0:
-        return np.array(end)
-    out: Floats = np.asarray(start + share * (end - start))
-    row = int(path.curve[i])
-    if row >= 0 and share > 0.0:
-        p, kind = path.curves.parameters[row], int(path.kind[i])
-        u = Way(kind, p.tolist()).parameter(share)
-        out[:3] = place_on(kind, int(path.curves.plane[row]), p, start, end, u)
-    return out
-
-
-def part_of(path: Toolpath, i: int, p0: float, p1: float) -> Shape | None:
-    """The curve of the part p0..p1 (shares of the length) of row i, None if it is straight."""
-    row = int(path.curve[i])
-    if row < 0:
-        return None
-    kind, p = int(path.kind[i]), path.curves.parameters[row].tolist()
-    way = Way(kind, p)
-    return int(path.curves.plane[row]), cut(kind, p, way.parameter(p0), way.parameter(p1))
-
-
-def part_at(path: Toolpath, i: int, u0: float, u1: float) -> tuple[Shape | None, float, float]:
-    """The curve of the part u0..u1 (curve parameters) of row i, and the shares of the length it begins and ends at."""
-    row = int(path.curve[i])
-    if row < 0:
-        return None, u0, u1
-    kind, p = int(path.kind[i]), path.curves.parameters[row].tolist()
-    way = Way(kind, p)
-    return (int(path.curves.plane[row]), cut(kind, p, u0, u1)), way.share(u0), way.share(u1)
-
-
-def position_at(path: Toolpath, i: int, u: float) -> Floats:
-    """The position on all axes at curve parameter u of row i. Shape (k,)."""
-    start = path.start if i == 0 else path.target[i - 1]
-    end = path.target[i]
-    row = int(path.curve[i])
-    if row < 0:
-        return np.asarray(start + u * (end - start))
-    p, kind = path.curves.parameters[row], int(path.kind[i])
-    share = Way(kind, p.tolist()).share(u)
-    out: Floats = np.asarray(start + share * (end - start))
-    out[:3] = place_on(kind, int(path.curves.plane[row]), p, start, end, u)
-    return out
+    Args:     picked: Shape (m,), ascending, rows with a length, without S-profile;  at: Shape (m,), where each is
+              cut, from its start [mm].
+    Returns:  the path;  what became of what;  Shape (m,), the rows that begin at the cuts.
+    """
+    n, m = len(path), len(picked)
+    number = np.ones(n, np.intp)
+    number[picked] = 2
+    origin = np.repeat(np.arange(n), number)
+    tails: Rows = np.cumsum(number)[picked] - 1
+    heads = tails - 1
+    length = path.length[picked]
+    rows, point, end = np.empty((2 * m, CURVE_PARAMETERS)), np.empty((2 * m, 3)), np.empty((2 * m, 3))
+    none = np.zeros(m)
+    cut_legs(
+        *geometry(path), path.length, np.concatenate([picked, picked]), np.concatenate([none, at]),
+        np.concatenate([at, length]), rows, point, end,
+    )  # fmt: skip
+    share = at / length
+    target = path.target[origin]
+    start = path.starts()[picked]
+    target[heads] = start + share[:, None] * (path.target[picked] - start)
+    target[heads, :3] = end[:m]
+    curve, p0, p1 = path.curve[origin], np.zeros(len(origin)), np.ones(len(origin))
+    p0[tails], p1[heads] = share, share
+    curved = np.flatnonzero(path.curve[picked] >= 0)
+    for place, offset in ((heads, 0), (tails, m)):
+        curve[place[curved]] = len(path.curves) + offset + curved
+    planes = np.zeros(m, np.uint8)
+    planes[curved] = path.curves.plane[path.curve[picked[curved]]]
+    curves = Curves(
+        np.concatenate([path.curves.plane, planes, planes]), np.vstack([path.curves.parameters, rows])
+    )
+    links = Links(origin, p0, p1, np.arange(len(origin)), np.zeros(len(origin)), np.ones(len(origin)))
+    return compose(path, origin, path.kind[origin], target, curve, curves, links), links, tails
