@@ -35,7 +35,7 @@ __all__ = [
 class Job:
     """A planned path ready to be run, sampled or drawn.
 
-    name: of its file;  time_law and smoothing [s]: it was planned for;  chunks: the path from its
+    name: of its file;  time_law: it was planned for;  chunks: the path from its
     start, each time it is called;  job_time [s];  segments: how many;  machine, machine_sha256: those it was
     planned for.
     """
@@ -43,7 +43,6 @@ class Job:
     name: str
     axes: tuple[str, ...]
     time_law: str
-    smoothing: float
     chunks: Callable[[], Iterator[Toolpath]]
     job_time: float
     segments: int
@@ -97,7 +96,7 @@ def _job(
     origin: ncq.Provenance,
 ) -> Job:
     return Job(
-        name, axes, origin.time_law, origin.smoothing, chunks, job_time, segments, origin.machine,
+        name, axes, origin.time_law, chunks, job_time, segments, origin.machine,
         origin.machine_sha256,
     )  # fmt: skip
 
