@@ -195,10 +195,36 @@ def test_devices_are_not_read(command: Command, tmp_path: Path, arguments: list[
     assert "is a device" in result.err
 
 
-def test_the_output_is_not_the_input(command: Command, program: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["compile", "-o", "part.nc"],
+        ["compile", "--report", "part.nc"],
+        ["compile", "-m", "m.toml", "-o", "m.toml"],
+        ["compile", "-o", "x.ncq", "--report", "./x.ncq"],
+        ["compile", "-o", "-"],
+        ["run", "--report", "part.nc"],
+        ["run", "--trace", "t.csv", "--report", "t.csv"],
+        ["export-dxf", "-o", "part.nc"],
+        ["export-dxf", "-o", "link.nc"],
+    ],
+)
+def test_outputs_are_neither_inputs_nor_each_other(
+    command: Command, program: Path, tmp_path: Path, arguments: list[str]
+) -> None:
     before = program.read_bytes()
-    _assert_refused(command("compile", program, "-o", program), 2, tmp_path, {"part.nc"})
+    (tmp_path / "m.toml").write_bytes((SAMPLES / "mill3.toml").read_bytes())
+    (tmp_path / "link.nc").symlink_to(program)
+    result = command(arguments[0], program, *arguments[1:])
+    _assert_refused(result, 2, tmp_path, {"part.nc", "m.toml", "link.nc"})
     assert program.read_bytes() == before
+
+
+@pytest.mark.parametrize("name", ["sample", "plot"])
+def test_a_program_that_is_called_like_an_output(command: Command, tmp_path: Path, name: str) -> None:
+    path = tmp_path / {"sample": "p.csv", "plot": "p.png"}[name]
+    path.write_text("% p\nN10 G1 X1 F20\n")
+    _assert_refused(command(name, path, "-o", path), 2, tmp_path, {path.name})
 
 
 def test_standard_input_needs_an_output_name(command: Command, tmp_path: Path) -> None:

@@ -40,12 +40,14 @@ def compile_program(
     chosen: StageOptions,
 ) -> None:
     """Compile a part program to an OutQueue; a program with errors leaves no file."""
-    from nccompile.cli.inputs import finish, machine_of, output_of, read_program
+    from nccompile.cli.inputs import finish, machine_of, read_program
+    from nccompile.cli.outputs import keep_apart, output_of
     from nccompile.cli.progress import progress
     from nccompile.toolchain import Compilation
 
     source = read_program(program)
     place = output_of(program, output, ".ncq")
+    keep_apart([program, machine], [place, report])
     options = replace(
         chosen.resolve(machine_of(machine)),
         losses=report is not None,

@@ -33,8 +33,10 @@ def export_dxf(
     from nccompile.backend.dxf import DxfExport
     from nccompile.backend.files import replacing
     from nccompile.cli.dxf_stages import stages
+    from nccompile.cli.outputs import keep_apart, output_of
 
-    place = output if output is not None else path.with_suffix(".dxf")
+    place = output_of(path, output, ".dxf")
+    keep_apart([path, machine], [place])
     drawing = DxfExport()
     settings = {**vars(chosen), "passes": passes}
     count = sum(

@@ -26,7 +26,6 @@ __all__ = [
     "finish",
     "machine_of",
     "open_job",
-    "output_of",
     "read_program",
 ]
 
@@ -113,18 +112,6 @@ def compiled(
     held = list(stage(compilation))
     finish(compilation, form)
     return compilation, held
-
-
-def output_of(path: Path, output: Path | None, suffix: str) -> Path:
-    """The output file: as given, or named after the input; raises UsageError where that cannot be."""
-    if output is None and path == STDIN:
-        raise UsageError("name the output with -o when the program comes from standard input")
-    if output is None and not path.name:
-        raise UsageError(f"{path} cannot be read: Is a directory")
-    place = path.with_suffix(suffix) if output is None else output
-    if place.exists() and path.exists() and place.samefile(path):
-        raise UsageError(f"{place} is the input: name another output with -o")
-    return place
 
 
 def finish(compilation: Compilation, form: Report) -> None:

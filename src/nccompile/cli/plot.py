@@ -31,7 +31,8 @@ def plot(
 ) -> None:
     """Draw the path, and velocity and acceleration over time."""
     from nccompile.backend.samples import sample
-    from nccompile.cli.inputs import machine_of, open_job, output_of, read_program
+    from nccompile.cli.inputs import machine_of, open_job, read_program
+    from nccompile.cli.outputs import keep_apart, output_of
     from nccompile.kernels import expect_work
     from nccompile.machine.limits import limits
     from nccompile.passes.velocity.settings import LAWS
@@ -40,6 +41,7 @@ def plot(
     from nccompile.view.plot import save
 
     place = output_of(path, output, ".png")
+    keep_apart([path, machine], [place])
     if place.suffix.lower() not in SUFFIXES:
         raise UsageError(f"{place}: pictures are written as {', '.join(SUFFIXES)}")
     axes_of = machine_of(machine)

@@ -9,23 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from nccompile.cli.options import (
-    AngleTolerance,
-    Define,
-    DiagnosticsFormat,
-    Input,
-    JunctionDeviation,
-    MachineFile,
-    MaxJumps,
-    Passes,
-    PlannerName,
-    PlannerOption,
-    Report,
-    SkipBlocks,
-    Start,
-    TimeLawOption,
-    Window,
-)
+from nccompile.cli.options import CycleTime, DiagnosticsFormat, Input, MachineFile, ProgramOptions, Report
 from nccompile.errors import UsageError
 
 if TYPE_CHECKING:
@@ -48,10 +32,7 @@ def run_program(
     override: Annotated[
         float, typer.Option("--override", metavar="FACTOR", help="Factor on velocities, 0.01 to 10.")
     ] = 1.0,
-    cycle_us: Annotated[
-        int | None,
-        typer.Option("--cycle-us", metavar="US", min=100, max=100_000, help="Default: the machine's cycle."),
-    ] = None,
+    cycle_us: CycleTime = None,
     m_delay: Annotated[
         str,
         typer.Option("--m-delay", metavar="SECONDS", help="Until an M function is acknowledged, or 'never'."),
@@ -68,31 +49,21 @@ def run_program(
     report: Annotated[
         Path | None, typer.Option("--report", metavar="FILE", help="The report as JSON, all events included.")
     ] = None,
-    start: Start = None,
-    define: Define = None,
-    skip_blocks: SkipBlocks = False,
-    max_jumps: MaxJumps = None,
-    angle_tolerance: AngleTolerance = None,
-    time_law: TimeLawOption = None,
-    planner: PlannerOption = PlannerName.LOOK_AHEAD,
-    window: Window = None,
-    junction_deviation: JunctionDeviation = None,
-    passes: Passes = None,
     diagnostics: DiagnosticsFormat = Report.TEXT,
+    *,
+    chosen: ProgramOptions,
 ) -> None:
     """Run an OutQueue or program on virtual drives and print what happened."""
-    from nccompile.cli.inputs import ProgramOptions, machine_of, open_job
+    from nccompile.cli.inputs import machine_of, open_job
+    from nccompile.cli.outputs import keep_apart
     from nccompile.cli.run_report import finish_run, report_lines
     from nccompile.runtime.task import CyclicTask
     from nccompile.runtime.trace import open_trace
     from nccompile.toolchain import machine_digest
 
+    keep_apart([path, machine], [trace, report])
     axes = machine_of(machine)
-    options = ProgramOptions(
-        start, define, skip_blocks, max_jumps, angle_tolerance, time_law, False,
-        planner if planner != PlannerName.LOOK_AHEAD else None, window, junction_deviation, passes,
-    )  # fmt: skip
-    job = open_job(path, axes, options, diagnostics)
+    job = open_job(path, axes, chosen, diagnostics)
     if job.machine_sha256 != machine_digest(axes):
         print(f"note: {path} was planned for {job.machine}, it runs on {axes.name}", file=sys.stderr)
     axes = _with_cycle(axes, cycle_us)
