@@ -1,3 +1,5 @@
+# ruff: isort: skip_file
+# Fifty imported numbers in fifty lines would hide the code.
 """The interpolator: from planned segments to one set position per cycle (SoftMotion §6.2.8).
 
     advance(rows, inputs, f, i, ..., out)     runs up to n cycles, returns how many and why it stopped
@@ -19,135 +21,30 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
+from nccompile.kernels.interpolator_enter import enter, may_leave, rest_at
 from nccompile.kernels.interpolator_law import arrive, begin, command, fire, phase
 from nccompile.kernels.interpolator_place import direction, locate
 from nccompile.kernels.interpolator_rate import FITS, OPEN
 from nccompile.kernels.interpolator_rows import (
-    A0,
-    A1,
-    ABORT,
-    ARC,
-    AT_M,
-    CONTINUES,
-    DWELL,
-    ELLIPSE,
-    EMERGENCY,
-    EVENT,
-    FINISHED,
-    GO,
-    HOLD,
-    IPO_ACCEL,
-    IPO_CONSTANT,
-    IPO_DECEL,
-    IPO_FINISHED,
-    IPO_INIT,
-    IPO_WAIT,
-    JERK,
-    JUMPED,
-    LAST_SWITCH,
-    LAW,
-    LINE_NO,
-    LOG_FULL,
-    M_FUNCTION,
-    M_ROW,
-    MODE,
-    NEED_DATA,
-    NODES,
-    OVERRIDE,
-    PLAN_A,
-    PLAN_V,
-    PLANNED,
-    POLYNOMIAL,
-    QUICK,
-    RAN,
-    RATE,
-    ROW,
-    RUNNING,
-    S0,
-    SCALED,
-    SET_POSITION,
-    SLOW,
-    STARTED,
-    STARVED,
-    STATUS,
-    STOPPED,
-    STOPPING,
-    SWITCHES,
-    T1,
-    T2,
-    T3,
-    TABLE,
-    TABLE_ROW,
-    TAU,
-    V0,
-    V1,
-    VP,
-    WANTED,
-    A,
-    Floats,
-    Inputs,
-    Rows,
-    S,
-    State,
-    V,
-    limit_ends,
-    state_f,
-    state_i,
+    A0, A1, ABORT, ARC, AT_M, CONTINUES, DWELL, ELLIPSE, EMERGENCY, EVENT, FINISHED, GO, HOLD, IPO_ACCEL,
+    IPO_CONSTANT, IPO_DECEL, IPO_FINISHED, IPO_INIT, IPO_WAIT, JERK, JUMPED, LAST_SWITCH, LAW, LINE_NO, LOG_FULL,
+    MODE, M_FUNCTION, M_ROW, NEED_DATA, NODES, OVERRIDE, PLANNED, PLAN_A, PLAN_V, POLYNOMIAL, QUICK, RAN, RATE, ROW,
+    RUNNING, S0, SCALED, SET_POSITION, SLOW, STARTED, STARVED, STATUS, STOPPED, STOPPING, SWITCHES, T1, T2, T3,
+    TABLE, TABLE_ROW, TAU, V0, V1, VP, WANTED, A, Floats, Inputs, Rows, S, State, V, limit_ends, state_f, state_i,
 )  # fmt: skip
 from nccompile.kernels.interpolator_third import (
-    begin_planned,
-    command_third,
-    leave,
-    pace,
-    phase_third,
-    run_table,
-    set_off,
+    command_third, leave, pace, phase_third, run_table, set_off,
 )  # fmt: skip
 from nccompile.kernels.timelaw import (
-    jerk_distance,
-    jerk_time,
-    jerk_velocity,
-    law_distance,
-    law_times,
-    law_velocity,
+    jerk_distance, jerk_time, jerk_velocity, law_distance, law_times, law_velocity,
 )  # fmt: skip
 
 __all__ = [
     "ABORT", "AT_M", "CONTINUES", "EMERGENCY", "EVENT", "FINISHED", "GO", "IPO_FINISHED", "JUMPED", "LAST_SWITCH",
     "LINE_NO", "LOG_FULL", "MODE", "M_ROW", "NEED_DATA", "NODES", "OVERRIDE", "PLANNED", "QUICK", "RAN", "ROW",
     "RUNNING", "SLOW", "STARVED", "STATUS", "SWITCHES", "TABLE_ROW", "Floats", "Inputs", "Rows", "S", "State", "V",
-    "advance", "direction", "limit_ends", "locate", "state_f", "state_i",
+    "advance", "direction", "limit_ends", "locate", "rest_at", "state_f", "state_i",
 ]  # fmt: skip
-
-
-@kernel
-def _enter(
-    rows: Rows, row: int, inputs: Inputs, f: Floats, i: State, nodes_u: Floats, nodes_s: Floats
-) -> None:
-    """Starts a row at its beginning; a third-order one from rest has to set off."""
-    arrive(rows, row, i, nodes_u, nodes_s)
-    if rows.jerk[row] <= 0.0:
-        i[MODE] = PLANNED
-        f[PLAN_V] = f[PLAN_A] = 0.0
-        begin(rows, row, 0.0, f[V], inputs, f, i)
-    elif f[V] == 0.0:
-        f[S] = 0.0
-        f[A] = 0.0
-        i[RUNNING] = 1
-        i[MODE] = STOPPED
-    else:
-        begin_planned(rows, row, 0.0, f, i)
-        i[STOPPING] = inputs.stop
-
-
-@kernel
-def _may_leave(rows: Rows, inputs: Inputs, f: Floats, i: State) -> bool:
-    """Whether the next cycle may need later rows: not if its law goes on for longer, untouched by inputs."""
-    if i[MODE] != PLANNED or i[RUNNING] == 0 or f[T1] + f[T2] + f[T3] - f[TAU] <= 2.0 * inputs.cycle:
-        return True
-    if f[OVERRIDE] != inputs.override or i[LAW] != inputs.law or i[STOPPING] != inputs.stop:
-        return True
-    return inputs.single_step == 1 or rows.v_now[i[ROW]] > f[WANTED]
 
 
 @kernel
@@ -297,7 +194,7 @@ def advance(
                     switches[done] = i[SWITCHES]
                     done += 1
                     continue
-        if fresh_cycle and patient and _may_leave(rows, inputs, f, i):
+        if fresh_cycle and patient and may_leave(rows, inputs, f, i):
             # a cycle that runs into rows that are not settled is taken back
             f_before[:] = f
             i_before[:] = i
@@ -327,7 +224,7 @@ def advance(
             row = i[ROW]
             if row < last and rows.jerk[row] > 0.0:
                 if i[RUNNING] == 0 and f[V] > 0.0:
-                    _enter(rows, row, inputs, f, i, nodes_u, nodes_s)
+                    enter(rows, row, inputs, f, i, nodes_u, nodes_s)
                 if fresh_cycle and i[RUNNING] == 1 and i[MODE] <= SCALED:
                     if command_third(rows, inputs, tail, complete, f, i) == OPEN and patient:
                         reason = NEED_DATA
@@ -356,7 +253,7 @@ def advance(
                     if (inputs.stop != GO or inputs.wait_at_stop == 1) and f[V] == 0.0:
                         i[STATUS] = IPO_WAIT
                         break
-                    _enter(rows, row, inputs, f, i, nodes_u, nodes_s)
+                    enter(rows, row, inputs, f, i, nodes_u, nodes_s)
                     if kind == M_FUNCTION:
                         i[M_ROW] = row
                         i[STATUS] = IPO_WAIT

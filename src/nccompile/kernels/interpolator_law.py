@@ -1,3 +1,5 @@
+# ruff: isort: skip_file
+# Fifty imported numbers in fifty lines would hide the code.
 """The law of a running row: how it begins, what phase it is in, and what a change of the inputs does to it.
 
 Rows of second order; what third-order rows have of their own is in `kernels.interpolator_third`.
@@ -13,46 +15,9 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 from nccompile.kernels.curves import tabulate
 from nccompile.kernels.interpolator_rows import (
-    CONTINUES,
-    DWELL,
-    ELLIPSE,
-    EVENT,
-    GO,
-    IPO_ACCEL,
-    IPO_CONSTANT,
-    IPO_DECEL,
-    LAST_SWITCH,
-    LAW,
-    LINE_NO,
-    M_ROW,
-    NODES,
-    OVERRIDE,
-    POLYNOMIAL,
-    QUICK,
-    ROW,
-    RUNNING,
-    S0,
-    SET_POSITION,
-    SLOW,
-    STOPPING,
-    SWITCH_NUMBERS,
-    SWITCHES,
-    T1,
-    T2,
-    T3,
-    TABLE_ROW,
-    TAU,
-    V0,
-    V1,
-    VP,
-    WANTED,
-    Floats,
-    Inputs,
-    Rows,
-    S,
-    State,
-    V,
-    limit_ends,
+    CONTINUES, DWELL, ELLIPSE, EVENT, GO, IPO_ACCEL, IPO_CONSTANT, IPO_DECEL, LAST_SWITCH, LAW, LINE_NO, M_ROW,
+    NODES, OVERRIDE, POLYNOMIAL, QUICK, ROW, RUNNING, S0, SET_POSITION, SLOW, STOPPING, SWITCHES, SWITCH_NUMBERS,
+    T1, T2, T3, TABLE_ROW, TAU, V0, V1, VP, WANTED, Floats, Inputs, Rows, S, State, V, limit_ends,
 )  # fmt: skip
 from nccompile.kernels.timelaw import law_times
 

@@ -26,11 +26,17 @@ FITS, TOO_SHARP, OPEN = 0, 1, 2
 _STEPS = 64
 """Places at which a change is compared with the limits, besides all ends of rows."""
 
+_SWING, _PLACES = 0.05, 8
+"""Rows that swing the acceleration by more than this part of the limit are looked at in so many places each."""
+
 _ROOM = 0.05
 """Part of a change's own acceleration and jerk that is kept free for what happens between those places."""
 
 _SLACK = 1e-8
-"""Relative rounding room of limits."""
+"""Relative rounding room of a limit."""
+
+_SPARE = 1e-4
+"""Part of a limit that a change leaves, for the same reason as `_ROOM`."""
 
 _GENTLER = 0.7
 """Factor from one try to the next."""
@@ -94,18 +100,20 @@ def _inside(
     limit: float, accel: float, decel: float, jerk: float,
 ) -> bool:  # fmt: skip
     """Whether a plan's state at a rate is inside a row's limits; at a constant rate of at most 1 it is."""
-    if r <= 1.0 and r1 == 0.0 and r2 == 0.0:
+    changes = r1 != 0.0 or r2 != 0.0
+    if r <= 1.0 and not changes:
         return True
     if r > 1.0 and r * v > limit * (1.0 + _SLACK):
         return False
+    part = 1.0 - _SPARE if changes else 1.0 + _SLACK
     own = r1 * v
     room = _ROOM * abs(own)
     reached = r * r * a + own
-    if reached + room > accel * (1.0 + _SLACK) or room - reached > decel * (1.0 + _SLACK):
+    if reached + room > accel * part or room - reached > decel * part:
         return False
     turn, bend = 3.0 * r * r1 * a, r2 * v
     room = _ROOM * (abs(turn) + abs(bend))
-    return abs(r * r * r * j + turn + bend) + room <= jerk * (1.0 + _SLACK)
+    return abs(r * r * r * j + turn + bend) + room <= jerk * part
 
 
 @kernel
@@ -126,8 +134,8 @@ def change_fits(
     tau += r0 * hold
     gone = -tau  # the plan's time at the start of the row, counted from now
     r, r1, r2 = r0, 0.0, 0.0
-    for n in range(_STEPS + 1):
-        t = end * n / _STEPS
+    t = 0.0
+    while True:
         before, before1, before2 = r, r1, r2
         r, r1, r2 = rate_at(t, r0, dr, ramp, level)
         goal = plan_time(t, r0, dr, ramp, level)
@@ -160,6 +168,12 @@ def change_fits(
             v, a0 + at * j, j, r, r1, r2, rows.v_limit[row], rows.accel[row], rows.decel[row], rows.jerk[row]
         ):
             return TOO_SHARP, row, 0.0, 0.0, 0.0
+        if t >= end:
+            break
+        step = end / _STEPS
+        if abs(a1 - a0) > _SWING * rows.accel[row]:
+            step = min(step, total / _PLACES)
+        t = min(end, t + step)
     goal = plan_time(end, r0, dr, ramp, level)
     return FITS, row, goal - gone, v0, a0
 

@@ -1,3 +1,5 @@
+# ruff: isort: skip_file
+# Fifty imported numbers in fifty lines would hide the code.
 """Stops and single steps of third-order plans: tables of constant jerks that replace the plan.
 
     a    |\\              a stop from (v, a):   -J until -D,  hold,  +J until v = a = 0
@@ -16,14 +18,7 @@ from math import sqrt
 from nccompile.kernels import kernel
 from nccompile.kernels.interpolator_rate import FITS, OPEN, TOO_SHARP, time_at
 from nccompile.kernels.interpolator_rows import (
-    CONTINUES,
-    PHASE,
-    PHASE_COUNT,
-    PHASES,
-    QUICK,
-    Floats,
-    Rows,
-    State,
+    CONTINUES, PHASE, PHASES, PHASE_COUNT, QUICK, Floats, Rows, State,
 )  # fmt: skip
 from nccompile.kernels.timelaw import jerk_distance, jerk_velocity
 

@@ -1,3 +1,5 @@
+# ruff: isort: skip_file
+# Fifty imported numbers in fifty lines would hide the code.
 """Rows of third-order plans: how they begin, set off, stop, and what commands do to them.
 
     PLANNED --override--> SCALED           the plan at another rate           (`kernels.interpolator_rate`)
@@ -28,48 +30,9 @@ from nccompile.kernels.interpolator_rate import (
     time_at,
 )  # fmt: skip
 from nccompile.kernels.interpolator_rows import (
-    A0,
-    A1,
-    GO,
-    IPO_ACCEL,
-    IPO_CONSTANT,
-    IPO_DECEL,
-    JERK,
-    MODE,
-    PHASE,
-    PHASE_COUNT,
-    PHASES,
-    PLAN_A,
-    PLAN_V,
-    PLANNED,
-    RATE,
-    RATE_BY,
-    RATE_FROM,
-    RATE_LEVEL,
-    RATE_RAMP,
-    RATE_TIME,
-    ROW,
-    RUNNING,
-    S0,
-    SCALED,
-    SLOW,
-    STARVED,
-    STOPPED,
-    STOPPING,
-    T1,
-    T2,
-    T3,
-    TABLE,
-    TAU,
-    V0,
-    V1,
-    A,
-    Floats,
-    Inputs,
-    Rows,
-    S,
-    State,
-    V,
+    A0, A1, GO, IPO_ACCEL, IPO_CONSTANT, IPO_DECEL, JERK, MODE, PHASE, PHASES, PHASE_COUNT, PLANNED, PLAN_A, PLAN_V,
+    RATE, RATE_BY, RATE_FROM, RATE_LEVEL, RATE_RAMP, RATE_TIME, ROW, RUNNING, S0, SCALED, SLOW, STARVED, STOPPED,
+    STOPPING, T1, T2, T3, TABLE, TAU, V0, V1, A, Floats, Inputs, Rows, S, State, V,
 )  # fmt: skip
 from nccompile.kernels.interpolator_stop import plan_step, plan_stop
 from nccompile.kernels.timelaw import jerk_distance, jerk_time, jerk_velocity

@@ -119,6 +119,18 @@ class Stepper:
             first = int(rows.event_begin[head])
             i[k.EVENT] += sign * first
 
+    def place(self, rows: k.Rows, row: int, s: float, inputs: k.Inputs) -> None:
+        """Puts the path at rest at path length `s` of a row, from which the next `run` has to start as its head.
+
+        Switch points before that place count as passed; what waits is left.
+        """
+        f, i = self.f, self.i
+        switches, last = i[k.SWITCHES], i[k.LAST_SWITCH]
+        k.rest_at(rows, row, s, inputs, f, i, self._nodes_u, self._nodes_s)
+        i[k.SWITCHES], i[k.LAST_SWITCH] = switches, last
+        self._version = -1
+        self._shift(rows, row, -1)
+
     def tangent(self, rows: k.Rows, head: int) -> tuple[float, float, float]:
         """Direction of the path in X, Y, Z at the present set position; zeros at rest (vecActTangent)."""
         if self.f[k.V] == 0.0 or self.i[k.RUNNING] == 0:
