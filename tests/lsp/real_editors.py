@@ -15,6 +15,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "editors.md"
@@ -57,7 +58,7 @@ def neovim(at: int) -> Command:
         (home / "nvim").mkdir()
         (home / "nvim" / "init.lua").write_text(set_up("lua", at))
         check = ROOT / "editors" / "neovim" / "check.lua"
-        return [os.environ.get("NVIM", "nvim"), "--headless", str(program), "-c", f"luafile {check}"]
+        return ["--headless", str(program), "-c", f"luafile {check}"]
 
     return command
 
@@ -66,15 +67,36 @@ def emacs(home: Path, program: Path) -> list[str]:
     """Emacs in batch mode with the set-up lines as its init file."""
     (home / "init.el").write_text(set_up("lisp", 0))
     check = ROOT / "editors" / "emacs" / "check.el"
-    return [os.environ.get("EMACS", "emacs"), "--batch", "-l", str(home / "init.el"), "-l", str(check)]
+    return ["--batch", "-l", str(home / "init.el"), "-l", str(check)]
 
 
-EDITORS: dict[str, tuple[str, str, Command]] = {
-    "neovim": ("NVIM", "nvim", neovim(0)),
-    "neovim-0.8": ("NVIM", "nvim", neovim(1)),
-    "emacs": ("EMACS", "emacs", emacs),
+class Editor(NamedTuple):
+    """An editor: the program, the variable that names another one, a probe that ends with 0 if it is new enough."""
+
+    program: str
+    variable: str
+    probe: tuple[str, ...]
+    command: Command
+
+    def path(self) -> str:
+        return os.environ.get(self.variable, self.program)
+
+    def is_there(self) -> bool:
+        if shutil.which(self.path()) is None:
+            return False
+        return subprocess.run([self.path(), *self.probe], capture_output=True, check=False).returncode == 0
+
+
+def _neovim(version: str, at: int) -> Editor:
+    has = f"lua os.exit(vim.fn.has('nvim-{version}') == 1 and 0 or 1)"
+    return Editor("nvim", "NVIM", ("--clean", "--headless", "-c", has), neovim(at))
+
+
+EDITORS = {
+    "neovim": _neovim("0.11", 0),
+    "neovim-0.8": _neovim("0.8", 1),
+    "emacs": Editor("emacs", "EMACS", ("--batch", "--eval", "(require 'eglot)"), emacs),
 }
-"""By name: the variable and the name of the program, and how it is started."""
 
 
 def tried(name: str) -> bool:
@@ -93,7 +115,7 @@ def tried(name: str) -> bool:
             "PROGRAM": str(program),
         }
         done = subprocess.run(
-            EDITORS[name][2](home, program),
+            [EDITORS[name].path(), *EDITORS[name].command(home, program)],
             env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=TIMEOUT, check=False,
         )  # fmt: skip
         seen = results.read_text().splitlines() if results.exists() else []
@@ -106,11 +128,7 @@ def tried(name: str) -> bool:
 
 def main(names: list[str]) -> int:
     """0 if all editors saw what they should, or none is there."""
-    wanted = names or [
-        name
-        for name, (variable, program, _) in EDITORS.items()
-        if variable in os.environ or shutil.which(program)
-    ]
+    wanted = names or [name for name, editor in EDITORS.items() if editor.is_there()]
     return 0 if all([tried(name) for name in wanted]) else 1
 
 
