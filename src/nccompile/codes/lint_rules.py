@@ -244,7 +244,8 @@ PAGES: tuple[Page, ...] = (
         "NC172", "An M function that nothing acknowledges",
         "An M function that the setting `acknowledged-m` does not list; without the setting there is no finding.\n"
         "The path waits at an M function until the machine acknowledges it (SoftMotion §3.2.2). One that no part of\n"
-        "the control program answers stops the job for good.",
+        "the control program answers stops the job for good.\n"
+        "The example below gives it with this in the settings, below [lint]: acknowledged-m = [3, 5]",
         "% a\nN10 G0 X1\nN20 M8",
         "% a\nN10 G0 X1\nN20 M3",
     ),

@@ -35,6 +35,8 @@ class Sheet(NamedTuple):
     def page(self, code: str) -> Page:
         """The page for `nccompile explain`."""
         why = f"{_sentence(self.what)}\n{_sentence(self.why)}"
+        if self.settings:
+            why += f"\nThe example below gives it with this in the settings, below [lint]: {self.settings}"
         return Page(code, self.title.rstrip("."), why, self.bad[0], self.okay[0])
 
 
