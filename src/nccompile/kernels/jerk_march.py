@@ -42,6 +42,7 @@ _SAFE, _CUT, _TOO_FAST, _TOO_STEEP, _LESS_JERK = 0, 1, 2, 3, 4
 _TINY = 1e-11  # of a row's length: places that are nearer to each other are one
 _SAME = 1e-12  # relative: velocities that differ by less are one
 _ROUNDED = 1e-9  # relative: by how much an ease may miss the velocity of its end
+_NEAR = 1e-9  # relative: an ease that ends so near before a limit uses it
 _STEPS = 60
 _JERK_STEP = (
     0.8  # a ramp is started anew with at most this share of its jerk, so that there are few such starts
@@ -73,7 +74,7 @@ def place_time(d: float, v: float, a: float, j: float) -> float:
             return t
         step = (t * (v + t * (0.5 * a + t * j / 6.0)) - d) / slope
         t -= step
-        if step <= 1e-15 * t:
+        if step <= 1e-11 * t:
             return t
     return t
 
@@ -129,26 +130,17 @@ def _level_time(level: float, t_rise: float, v: float, a: float, a_top: float, j
 
 
 @kernel
-def _too_far(
-    steep: bool,
-    t: float,
-    value: float,
-    end: float,
-    t_rise: float,
-    v: float,
-    a: float,
-    a_top: float,
-    jerk: float,
-) -> float:
-    """How far before `end` an ease after a rise of t reaches the velocity `value`, if steep, how far behind it the
-    acceleration `value`; a rise that is short enough has it below 0."""
+def _eased(
+    steep: bool, z: float, value: float, t_rise: float, v: float, a: float, a_top: float, jerk: float
+) -> tuple[float, float]:
+    """(time of a rise, place): where its ease has the velocity `value` with the acceleration z.
+
+    steep: z is the time, and the place is where the ease has the acceleration `value`.
+    """
+    t = z if steep else _level_time(value + 0.5 * z * z / jerk, t_rise, v, a, a_top, jerk)
     _, _, a1, way, v1 = _rise(t, t_rise, v, a, a_top, jerk)
-    if steep:
-        u = max(a1 - value, 0.0) / jerk
-    else:
-        u = (a1 - sqrt(max(a1 * a1 - 2.0 * jerk * (value - v1), 0.0))) / jerk
-    at = way + u * (v1 + u * (0.5 * a1 - u * jerk / 6.0))
-    return at - end if steep else end - at
+    u = (a1 - (value if steep else z)) / jerk
+    return t, way + u * (v1 + u * (0.5 * a1 - u * jerk / 6.0))
 
 
 @kernel
@@ -156,32 +148,37 @@ def _last_time(
     steep: bool, low: float, high: float, value: float, end: float, t_rise: float, v: float, a: float, a_top: float,
     jerk: float,
 ) -> float:  # fmt: skip
-    """The longest rise between `low` and `high` whose ease has `value` at `end`: regula falsi (Illinois)."""
-    f_low = _too_far(steep, low, value, end, t_rise, v, a, a_top, jerk)
-    f_high = _too_far(steep, high, value, end, t_rise, v, a, a_top, jerk)
-    if f_low >= 0.0:
-        return low
+    """The longest rise whose ease has `value` no later (steep) or no earlier than at `end`: regula falsi (Illinois).
+
+    low, high: what is known to be short and long enough, times if steep, otherwise accelerations at the end.
+    """
+    sign = 1.0 if steep else -1.0
+    t_low, at = _eased(steep, low, value, t_rise, v, a, a_top, jerk)
+    f_low = sign * (at - end)
+    _, at = _eased(steep, high, value, t_rise, v, a, a_top, jerk)
+    f_high = sign * (at - end)
     side = 0
     for _ in range(_STEPS):
-        if high - low <= 1e-15 * high:
+        if f_low >= -_NEAR * end or f_high <= f_low:
             break
-        t = (low * f_high - high * f_low) / (f_high - f_low)
-        if not low < t < high:
-            t = 0.5 * (low + high)
-        f = _too_far(steep, t, value, end, t_rise, v, a, a_top, jerk)
-        if f <= 0.0:
-            low, f_low = t, f
-            if f >= -_SAME * end:
+        z = (low * f_high - high * f_low) / (f_high - f_low)
+        if not low < z < high:
+            z = 0.5 * (low + high)
+            if not low < z < high:
                 break
+        t, at = _eased(steep, z, value, t_rise, v, a, a_top, jerk)
+        f = sign * (at - end)
+        if f <= 0.0:
+            low, f_low, t_low = z, f, t
             if side == 1:
                 f_high *= 0.5
             side = 1
         else:
-            high, f_high = t, f
+            high, f_high = z, f
             if side == -1:
                 f_low *= 0.5
             side = -1
-    return low
+    return t_low
 
 
 @kernel
@@ -292,9 +289,12 @@ def march(
                             cut = where
                             t, ease_to = whole, -1
                             continue
-                        t_high, t = t, low
-                        if not inside:
-                            t = _last_time(False, low, t_high, value, end, t_rise, v, a, a_top, jerk)
+                        if inside:
+                            t = low
+                        else:
+                            _, _, a1, _, v2 = _rise(t, t_rise, v, a, a_top, jerk)
+                            high = sqrt(max(a1 * a1 - 2.0 * jerk * (value - v2), 0.0))
+                            t = _last_time(False, 0.0, high, value, end, t_rise, v, a, a_top, jerk)
                         ease_to = where
                         continue
                     break
