@@ -29,15 +29,16 @@ def plot(
     *,
     chosen: ProgramOptions,
 ) -> None:
-    """Draw the path, and velocity and acceleration over time."""
+    """Draw the path, and velocity, acceleration and jerk over time."""
     from nccompile.backend.samples import sample
     from nccompile.cli.inputs import machine_of, open_job, read_program
     from nccompile.cli.outputs import keep_apart, output_of
     from nccompile.kernels import expect_work
     from nccompile.machine.limits import limits
+    from nccompile.passes.velocity import row_times
     from nccompile.passes.velocity.settings import LAWS
     from nccompile.toolchain import Compilation
-    from nccompile.view.motion import gather
+    from nccompile.view.motion import caps, gather
     from nccompile.view.plot import save
 
     place = output_of(path, output, ".png")
@@ -53,5 +54,6 @@ def plot(
     before = None
     if chosen.passes and path.is_file():  # a pipe cannot be read again
         before = Compilation(read_program(path), chosen.resolve(axes_of)).decoded()
-    save(place, job.chunks(), motion, limits(axes_of, job.axes), title=title, before=before)
-    print(f"{place}: path, and velocity and acceleration over {job.job_time:.3f} s")
+    bounds = caps(job.chunks(), row_times)
+    save(place, job.chunks(), motion, limits(axes_of, job.axes), bounds, title=title, before=before)
+    print(f"{place}: path, and velocity, acceleration and jerk over {job.job_time:.3f} s")

@@ -1,16 +1,16 @@
-"""Set positions over time: velocity and acceleration of each axis, and their reduction to what a pixel shows."""
+"""Set positions over time: velocity, acceleration and jerk of each axis, and what a pixel shows of them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
-from nccompile.toolpath.columns import Floats
+from nccompile.toolpath.columns import Floats, Toolpath
 
-__all__ = ["Motion", "SetPositions", "envelope", "gather"]
+__all__ = ["Caps", "Motion", "SetPositions", "caps", "envelope", "gather"]
 
 
 class SetPositions(Protocol):
@@ -58,6 +58,43 @@ class Motion:
         if len(self.t) > 1:
             a[1:] = np.diff(self.velocities(), axis=0) / np.diff(self.t)[:, None]
         return a
+
+    def jerks(self) -> Floats:
+        """Shape (m, k): difference quotient of the accelerations; NaN next to a jump."""
+        j = np.zeros_like(self.position)
+        if len(self.t) > 1:
+            j[1:] = np.diff(self.accelerations(), axis=0) / np.diff(self.t)[:, None]
+        return j
+
+
+@dataclass(frozen=True)
+class Caps:
+    """What limits the path velocity over time, constant between its times.
+
+    t f8 (m,) [s];  feed, limit f8 (m,) [mm/s]: as programmed, and what machine and geometry allow; NaN where the
+    path stands.
+    """
+
+    t: Floats
+    feed: Floats
+    limit: Floats
+
+
+def caps(chunks: Iterable[Toolpath], times: Callable[[Toolpath, float], Floats]) -> Caps:
+    """The caps of a planned path; times gives the seconds of a chunk's rows, entered at a velocity."""
+    end, before = 0.0, 0.0
+    t, feed, limit = [np.zeros(1)], [np.full(1, np.nan)], [np.full(1, np.nan)]
+    for chunk in chunks:
+        if not len(chunk):
+            continue
+        assert chunk.v_limit is not None
+        assert chunk.v_end is not None
+        moving = chunk.length > 0.0
+        t.append(end + np.cumsum(times(chunk, before)))
+        feed.append(np.where(moving, chunk.feed, np.nan))
+        limit.append(np.where(moving, chunk.v_limit, np.nan))
+        end, before = float(t[-1][-1]), float(chunk.v_end[-1])
+    return Caps(np.concatenate(t), np.concatenate(feed), np.concatenate(limit))
 
 
 def gather(axes: Sequence[str], blocks: Iterable[SetPositions]) -> Motion:

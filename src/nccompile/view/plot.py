@@ -3,10 +3,12 @@
 +-----------------+--------------+      XY: rapids green, feed blue, switch points and M functions with
 | XY              | path velocity|          their numbers, start and end
 |                 +--------------+      isometric: only if Z moves
-|                 | axes: mm/s   |      right: over time, with the machine's limits as dashed lines where
-+-----------------+--------------+          they are near
+|                 | axes: mm/s   |      right: over time; path velocity under programmed feed and limit, the axes
++-----------------+--------------+          with the machine's limits as dashed lines where they are near
 | isometric       | axes: mm/s²  |
-+-----------------+--------------+      The same input gives the same bytes: no dates, no versions.
+|                 +--------------+      The same input gives the same bytes: no dates, no versions.
+|                 | axes: mm/s³  |
++-----------------+--------------+
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ from matplotlib.figure import Figure, SubFigure
 from nccompile.errors import UsageError
 from nccompile.toolpath.columns import Floats, Toolpath
 from nccompile.view.drawing import Drawing, draw, thin
-from nccompile.view.motion import Motion, envelope
+from nccompile.view.motion import Caps, Motion, envelope
 
 __all__ = ["Limits", "plot_dynamics", "plot_path", "save"]
 
@@ -48,12 +50,13 @@ _BINS = 1500  # stretches of time in a curve: about one a pixel
 _DENSE = 10_000  # points above which thin lines keep the tracks apart
 _LABELS = 40  # more labels than this cover the path
 _NEAR = 2.0  # a limit is drawn if it is at most this many times the greatest value
+_BEYOND = 2.0  # peaks of single cycles above this many times the greatest limit are cut off
 
 _PROJECTION_ANGLE = pi / 6.0
 
 
 class Limits(Protocol):
-    """Velocity and acceleration limits of the axes, f8 (k,), inf where there is none (`machine.AxisLimits`)."""
+    """Limits of the axes, f8 (k,), inf where there is none (`machine.AxisLimits`)."""
 
     @property
     def velocity(self) -> Floats:
@@ -62,6 +65,10 @@ class Limits(Protocol):
     @property
     def acceleration(self) -> Floats:
         """Shape (k,) [mm/s² or deg/s²]."""
+
+    @property
+    def jerk(self) -> Floats | None:
+        """Shape (k,) [mm/s³ or deg/s³]."""
 
 
 def plot_path(
@@ -74,11 +81,13 @@ def plot_path(
     return figure
 
 
-def plot_dynamics(motion: Motion, limits: Limits | None = None, *, title: str = "") -> Figure:
-    """A figure of path velocity, axis velocities and axis accelerations over time."""
+def plot_dynamics(
+    motion: Motion, limits: Limits | None = None, caps: Caps | None = None, *, title: str = ""
+) -> Figure:  # fmt: skip
+    """A figure of path velocity, and of velocity, acceleration and jerk of the axes over time."""
     with mpl.rc_context(_STYLE):
-        figure = _figure(11.0, 8.0, title)
-        _dynamics(figure, motion, limits)
+        figure = _figure(11.0, 10.0, title)
+        _dynamics(figure, motion, limits, caps)
     return figure
 
 
@@ -87,6 +96,7 @@ def save(
     chunks: Iterable[Toolpath],
     motion: Motion | None = None,
     limits: Limits | None = None,
+    caps: Caps | None = None,
     *,
     title: str = "",
     before: Iterable[Toolpath] | None = None,
@@ -109,7 +119,7 @@ def save(
             halves: Any = figure.subfigures(1, 2)
             left, right = halves
             _path(left, draw(chunks), stacked=True, before=None if before is None else draw(before))
-            _dynamics(right, motion, limits)
+            _dynamics(right, motion, limits, caps)
     picture = io.BytesIO()
     with mpl.rc_context(_STYLE):
         figure.savefig(picture, format=kind, dpi=_DPI, metadata=stamps[kind])
@@ -213,33 +223,60 @@ def _triad(axes: Any, angle: tuple[float, float]) -> None:
         )  # fmt: skip
 
 
-def _dynamics(figure: Figure | SubFigure, motion: Motion, limits: Limits | None) -> None:
-    """Three curves over time, above each other."""
-    path, velocity, acceleration = figure.subplots(3, 1, sharex=True)
+def _dynamics(
+    figure: Figure | SubFigure, motion: Motion, limits: Limits | None, caps: Caps | None
+) -> None:  # fmt: skip
+    """Four curves over time, above each other."""
+    path, velocity, acceleration, jerk = figure.subplots(4, 1, sharex=True)
     path.fill_between(*envelope(motion.t, motion.v, _BINS), color=_FEED, alpha=0.15, linewidth=0)
-    path.plot(*envelope(motion.t, motion.v, _BINS), color=_FEED, linewidth=1.0)
+    path.plot(*envelope(motion.t, motion.v, _BINS), color=_FEED, linewidth=1.0, label="velocity", zorder=3)
     path.set(title="Path velocity", ylabel="v [mm/s]")
-    path.set_ylim(bottom=0.0)
+    top = 1.15 * float(motion.v.max(initial=1e-9))
+    if caps is not None:
+        top = _caps(path, caps, top)
+    path.set_ylim(0.0, top)
     moving = motion.moving()
     rotary = any(motion.axes[i] in "ABC" for i in moving)
-    _per_axis(velocity, motion, motion.velocities(), moving, None if limits is None else limits.velocity)
-    velocity.set(title="Axis velocity", ylabel="v [mm/s, deg/s]" if rotary else "v [mm/s]")
-    _per_axis(
-        acceleration, motion, motion.accelerations(), moving, None if limits is None else limits.acceleration
-    )
-    acceleration.set(
-        title="Axis acceleration", ylabel="a [mm/s², deg/s²]" if rotary else "a [mm/s²]", xlabel="time [s]"
-    )
-    acceleration.margins(x=0.01)
+    for axes, name, symbol, unit, values, limit in (
+        (velocity, "velocity", "v", "/s", motion.velocities(), None if limits is None else limits.velocity),
+        (
+            acceleration,
+            "acceleration",
+            "a",
+            "/s²",
+            motion.accelerations(),
+            None if limits is None else limits.acceleration,
+        ),
+        (jerk, "jerk", "j", "/s³", motion.jerks(), None if limits is None else limits.jerk),
+    ):
+        _per_axis(axes, motion, values, moving, limit)
+        axes.set(
+            title=f"Axis {name}",
+            ylabel=f"{symbol} [mm{unit}, deg{unit}]" if rotary else f"{symbol} [mm{unit}]",
+        )
+    jerk.set(xlabel="time [s]")
+    jerk.margins(x=0.01)
+
+
+def _caps(axes: Any, caps: Caps, top: float) -> float:
+    """Programmed feed and limit over the path velocity; returns how far up the picture has to go."""
+    for values, color, label in ((caps.feed, "#868e96", "programmed feed"), (caps.limit, "#e03131", "limit")):
+        t, y = np.repeat(caps.t, 2)[1:-1], np.repeat(values[1:], 2)
+        axes.plot(*envelope(t, y, _BINS), color=color, linewidth=0.9, label=label, zorder=2, alpha=0.9)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.2, 1.19), ncols=3, fontsize=8)
+    slow = caps.feed[np.isfinite(caps.feed)]
+    return min(1.15 * float(slow.max(initial=1e-9)), 2.0 * top) if len(slow) else top
 
 
 def _per_axis(axes: Any, motion: Motion, values: Floats, moving: list[int], limit: Floats | None) -> None:
     """One curve an axis; its limit as dashed lines if it is near, in the legend always."""
     largest = float(np.nanmax(np.abs(values[:, moving]), initial=0.0)) if moving else 0.0
+    highest = 0.0
     for i in moving:
         color = _AXIS_COLORS[i % len(_AXIS_COLORS)]
         label = motion.axes[i]
         if limit is not None and np.isfinite(limit[i]):
+            highest = max(highest, float(limit[i]))
             label += f"  (limit ±{limit[i]:g})"
             if limit[i] <= _NEAR * largest:
                 for side in (-limit[i], limit[i]):
@@ -248,4 +285,10 @@ def _per_axis(axes: Any, motion: Motion, values: Floats, moving: list[int], limi
             *envelope(motion.t, values[:, i], _BINS), color=color, linewidth=0.9, alpha=0.8, label=label
         )
     if moving:
-        axes.legend(loc="upper left", bbox_to_anchor=(0.2, 1.13), ncols=min(len(moving), 5), fontsize=8)
+        axes.legend(loc="upper left", bbox_to_anchor=(0.2, 1.19), ncols=min(len(moving), 5), fontsize=8)
+    if largest > _BEYOND * highest > 0.0:
+        axes.set_ylim(-_BEYOND * highest, _BEYOND * highest)
+        axes.annotate(
+            f"peaks of single cycles up to {largest:.3g} are cut off", (0.99, 0.04), xycoords="axes fraction",
+            ha="right", fontsize=7.5, color="#555c66",
+        )  # fmt: skip

@@ -18,7 +18,7 @@ from nccompile.kernels import curve_parts as kernels
 from nccompile.kernels import expect_work
 from nccompile.passes.velocity.limits import creep
 from nccompile.passes.velocity.parts import Parts, assembled
-from nccompile.passes.velocity.settings import LOOK_AHEAD, TIME_OPTIMAL, PlanSettings
+from nccompile.passes.velocity.settings import JERK, LOOK_AHEAD, TIME_OPTIMAL, PlanSettings
 from nccompile.toolpath.columns import CURVE_PARAMETERS, Floats, Kind, Plane, Toolpath
 
 __all__ = ["cut_at_bends"]
@@ -81,7 +81,7 @@ def _bounds(chunk: Toolpath, settings: PlanSettings) -> tuple[Floats, Floats, Fl
     n = len(chunk)
     feed = np.where(chunk.feed > 0.0, chunk.feed, settings.feed)
     across, top, slow = np.full(n, np.inf), feed.copy(), np.zeros(n)
-    if settings.planner != LOOK_AHEAD:
+    if settings.planner not in (LOOK_AHEAD, JERK):
         return across, top, slow
     limits = settings.planned_limits
     curved = np.flatnonzero(chunk.curve >= 0)
