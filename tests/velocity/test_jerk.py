@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from nccompile.backend.samples import SampleBlock, sample
 from nccompile.machine.model import default_machine
 from nccompile.passes.velocity import JERK, LOOK_AHEAD, PlanSettings, jerk, plan, row_times
 from nccompile.toolpath.columns import Floats, Ints, Kind, Toolpath
@@ -285,3 +286,46 @@ def test_arcs_keep_the_jerk_of_the_axes_on_their_way() -> None:
             1 + 1e-9
         )
         assert length > 0.0
+
+
+@st.composite
+def straights(draw: st.DrawFn) -> Toolpath:
+    """Lines behind each other with feeds and accelerations of their own, some turning back (a stop)."""
+    build = Builder()
+    for _ in range(draw(st.integers(1, 12))):
+        build.line(
+            draw(st.one_of(st.floats(0.05, 2.0), st.floats(2.0, 60.0))), draw(st.sampled_from([0.0, 0.0, 0.0, pi])),
+            draw(st.floats(5.0, 450.0)), draw(st.floats(200.0, 9000.0)), draw(st.floats(200.0, 9000.0)),
+        )  # fmt: skip
+    return build.path()
+
+
+@settings(max_examples=15, deadline=None)
+@given(straights())
+def test_the_axis_keeps_its_limits_in_every_cycle(path: Toolpath) -> None:
+    cycle = 1e-3
+    whole = planned(path)
+    blocks = list(sample([whole], cycle))
+    samples = SampleBlock(*(np.concatenate(column) for column in zip(*blocks, strict=True)))
+    v = np.diff(samples.position[:, 0], prepend=0.0) / cycle
+    a = np.diff(v, prepend=0.0) / cycle
+    j = np.diff(a, prepend=0.0) / cycle
+    noise = 4e-16 * np.abs(samples.position[:, 0]).max() * 8  # rounding of differences of positions
+    assert np.abs(v).max() <= X.velocity * (1 + 1e-6)
+    assert np.abs(a).max() <= X.acceleration * (1 + 1e-6) + noise / cycle**2
+    assert np.abs(j).max() <= JERK_X * (1 + 1e-6) + noise / cycle**3
+    assert np.array_equal(samples.position[-1], path.target[-1])
+    total = float(row_times(whole, 0.0).sum())
+    assert total - 1e-9 <= samples.t[-1] <= total + 2 * cycle
+
+
+def test_an_s_profile_becomes_straight_parts_through_its_places() -> None:
+    build = Builder()
+    build.line(20.0, 0.0, 50, 2000, 2000, dz=4.0)
+    path = build.path().replace(profile=np.array([1 << 2], np.uint16), length=np.array([20.0]))
+    whole = planned(path)
+    verify(whole)
+    assert not (whole.profile & 0x7FFF).any()
+    w = whole.target[:, 0] / 20.0
+    smooth = w**3 * (10.0 - 15.0 * w + 6.0 * w * w)
+    assert np.abs(whole.target[:, 2] - 4.0 * smooth).max() <= 2e-4 * 4.0
