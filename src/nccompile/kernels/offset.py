@@ -31,7 +31,7 @@ from nccompile.kernels.loops import way_share
 
 __all__ = ["cut_curve", "cut_curves", "offset_rows", "shares_along"]
 
-_NO_RADIUS = 1e-9  # [mm] an offset arc of less is a point
+_NO_RADIUS = 1e-9  # [mm] an offset arc of less is a point, its centre: a line without length
 _FINEST = 1.0 / 16777216  # of a curve: less of it that turns is a cusp
 _TURNED = 3.0  # [rad] a cusp turns by pi; which way is open, so the outer one is taken
 _CHECKS = 9  # inner places at which a cubic is compared
@@ -209,7 +209,12 @@ def offset_rows(
                 piece_ends[count, 1] = row[1] + row[2] * sin(row[3])
                 piece_ends[count, 2] = row[0] + row[2] * cos(row[3] + row[4])
                 piece_ends[count, 3] = row[1] + row[2] * sin(row[3] + row[4])
-                count += 1
+            else:
+                piece_kind[count] = 1
+                piece_curve[count] = -1
+                for c in range(4):
+                    piece_ends[count, c] = p[c % 2]
+            count += 1
             continue
         low = 0.0
         todo[0] = 1.0

@@ -15,8 +15,8 @@ from nccompile.kernels.intersect import place
 
 __all__ = ["distance_from", "offset_deviation"]
 
-_SCAN = 32  # places at which an ellipse or cubic is looked at first
-_FINE = 1e-9  # of a curve, where the search for its nearest place stops
+_SCAN = 8  # places at which a part of an ellipse or cubic is looked at first
+_FINE = 1e-5  # of that part, where the search for its nearest place stops: the distance is off by far less
 _GOLDEN = 0.6180339887498949
 
 
@@ -36,7 +36,7 @@ def distance_from(kind: int, p: Floats, e: Floats, x: float, y: float, low: floa
             at = i
     a = low + (high - low) * max(at - 1, 0) / _SCAN
     b = low + (high - low) * min(at + 1, _SCAN) / _SCAN
-    while b - a > _FINE:
+    while b - a > _FINE * (high - low):
         c = b - _GOLDEN * (b - a)
         f = a + _GOLDEN * (b - a)
         px, py = place(kind, p, e, c)

@@ -60,7 +60,7 @@ def _lead(
     curve[at] = -1
     ax = x + way * tx
     ay = y + way * ty
-    if style == 2:
+    if style == 2 and (tx != 0.0 or ty != 0.0):
         cx = x - side * length * ty
         cy = y + side * length * tx
         ax = cx + way * tx

@@ -290,16 +290,26 @@ def left_over(
 
 
 def report(
-    path: Toolpath, depth: Floats, where: Floats, loops: Flags, is_error: bool, context: Context
+    path: Toolpath,
+    depth: Floats,
+    where: Floats,
+    loops: Flags,
+    is_error: bool,
+    said: set[int],
+    context: Context,
 ) -> None:
     """NC302 for every source line of the new rows `path` with a depth above 0, at its deepest place.
 
-    loops: Shape (r,), rows where the gouge is cut out later: there it is a warning.
+    loops: Shape (r,), rows where the gouge is cut out later: there it is a warning;  said: lines that have their
+    finding, added to.
     """
     deep = np.flatnonzero(depth > 0.0)
     context.report.counts["gouges left to avoid-loops"] += int(np.count_nonzero(loops[deep]))
     deep = deep[np.lexsort((-depth[deep], path.line[deep]))]
     for i in deep[np.diff(path.line[deep], prepend=-1) != 0]:
+        if int(path.line[i]) in said:
+            continue
+        said.add(int(path.line[i]))
         severity = Severity.ERROR if is_error and not loops[i] else Severity.WARNING
         context.find(
             "NC302", severity,

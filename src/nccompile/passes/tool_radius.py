@@ -60,7 +60,7 @@ _CLEAR = _SIDES | int(Mark.TOOL_STOP)
 _WORK = 4
 """What correcting a row costs, in the rows by which other passes count."""
 
-_SAMPLES = 15
+_SAMPLES = 9
 """Places of an ellipse's or cubic's offset piece at which its distance is measured, each way."""
 
 
@@ -174,8 +174,9 @@ class ToolRadius(Pass):
             out = build(path, count, emitted, offsets, _CLEAR)
             left, where = left_over(out, emitted, offsets, gouges, cut, depth, where)
             findings.append((out, np.where(cut, left, 0.0), where, np.zeros(len(out), np.bool_)))
+        said: set[int] = set()
         for out, depth, where, cut in reversed(findings):
-            report(out, depth, where, cut, self.gouge != "warn", context)
+            report(out, depth, where, cut, self.gouge != "warn", said, context)
         return findings[-1][0]
 
 
