@@ -17,7 +17,7 @@ from nccompile.kernels.stepper import BURST, Stepper
 from nccompile.kernels.timelaw import TRAPEZOID
 from nccompile.toolpath.columns import Floats, Toolpath
 
-__all__ = ["SampleBlock", "rows_of", "sample"]
+__all__ = ["SampleBlock", "quick_decelerations", "rows_of", "sample"]
 
 
 class SampleBlock(NamedTuple):
@@ -37,8 +37,11 @@ class SampleBlock(NamedTuple):
     fired: npt.NDArray[np.int64]
 
 
-def rows_of(path: Toolpath) -> k.Rows:
-    """A planned path as the rows of the interpolator (shares the arrays)."""
+def rows_of(path: Toolpath, acceleration: Floats | None = None) -> k.Rows:
+    """A planned path as the rows of the interpolator (shares the arrays).
+
+    acceleration: of the axes, Shape (k,) [mm/s²], see `quick_decelerations`.
+    """
     assert path.v_limit is not None
     assert path.v_junction is not None
     assert path.v_end is not None
@@ -49,10 +52,27 @@ def rows_of(path: Toolpath) -> k.Rows:
     borders = np.searchsorted(e.segment, np.arange(len(path) + 1)).astype(np.int32)
     return k.Rows(
         path.kind, path.starts(), path.target, path.curve, path.curves.plane, path.curves.parameters,
-        path.length, path.feed, path.v_limit, path.v_junction, path.v_end, a_end, path.accel, path.decel, path.decel,
-        jerk, path.profile, path.line, borders[:-1], borders[1:], e.kind, e.number, e.position, e.k,
-        np.empty(len(path)),
+        path.length, path.feed, path.v_limit, path.v_junction, path.v_end, a_end, path.accel, path.decel,
+        quick_decelerations(path, acceleration, 0, len(path)), jerk, path.profile, path.line, borders[:-1],
+        borders[1:], e.kind, e.number, e.position, e.k, np.empty(len(path)),
     )  # fmt: skip
+
+
+def quick_decelerations(path: Toolpath, acceleration: Floats | None, begin: int, end: int) -> Floats:
+    """Shape (end - begin,): the greatest deceleration of a quick stop on the rows [mm/s²].
+
+    On straight rows what the accelerations of the axes, Shape (k,), allow along them; on curves, where a part of them
+    is needed to turn, the planned deceleration.  Without accelerations there is no bound.
+    """
+    if acceleration is None:
+        return np.full(end - begin, np.inf)
+    length, decel = path.length[begin:end], path.decel[begin:end]
+    start = np.vstack([path.start if begin == 0 else path.target[begin - 1], path.target[begin : end - 1]])
+    way = np.abs(path.target[begin:end] - start[: end - begin])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        allowed = np.where(way > 0.0, acceleration * length[:, None] / way, np.inf).min(axis=1)
+    straight = (path.curve[begin:end] < 0) & ((path.profile[begin:end] & 0x7FFF) == 0) & (length > 0.0)
+    return np.where(straight, allowed, decel)
 
 
 def sample(chunks: Iterable[Toolpath], cycle: float, law: int = TRAPEZOID) -> Iterator[SampleBlock]:

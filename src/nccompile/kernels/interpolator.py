@@ -42,8 +42,8 @@ from nccompile.kernels.timelaw import (
 __all__ = [
     "ABORT", "AT_M", "CONTINUES", "EMERGENCY", "EVENT", "FINISHED", "GO", "IPO_FINISHED", "JUMPED", "LAST_SWITCH",
     "LINE_NO", "LOG_FULL", "MODE", "M_ROW", "NEED_DATA", "NODES", "OVERRIDE", "PLANNED", "QUICK", "RAN", "ROW",
-    "RUNNING", "SLOW", "STARVED", "STATUS", "SWITCHES", "TABLE_ROW", "Floats", "Inputs", "Rows", "S", "State", "V",
-    "advance", "direction", "limit_ends", "locate", "rest_at", "state_f", "state_i",
+    "RUNNING", "SLOW", "STARTED", "STARVED", "STATUS", "STOPPED", "SWITCHES", "TABLE", "TABLE_ROW", "Floats", "Inputs",
+    "Rows", "S", "State", "V", "advance", "direction", "limit_ends", "locate", "rest_at", "state_f", "state_i",
 ]  # fmt: skip
 
 

@@ -26,7 +26,7 @@ FITS, TOO_SHARP, OPEN = 0, 1, 2
 _STEPS = 64
 """Places at which a change is compared with the limits, besides all ends of rows."""
 
-_SWING, _PLACES = 0.05, 8
+_SWING, _PLACES = 0.05, 32
 """Rows that swing the acceleration by more than this part of the limit are looked at in so many places each."""
 
 _ROOM = 0.05

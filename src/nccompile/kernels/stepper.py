@@ -120,14 +120,13 @@ class Stepper:
             i[k.EVENT] += sign * first
 
     def place(self, rows: k.Rows, row: int, s: float, inputs: k.Inputs) -> None:
-        """Puts the path at rest at path length `s` of a row, from which the next `run` has to start as its head.
+        """Puts the path at rest at path length `s` of a row of a whole path; the next `run` starts there.
 
         Switch points before that place count as passed; what waits is left.
         """
         f, i = self.f, self.i
-        switches, last = i[k.SWITCHES], i[k.LAST_SWITCH]
+        k.limit_ends(rows, row, len(rows.kind), 1, float(f[k.OVERRIDE]))
         k.rest_at(rows, row, s, inputs, f, i, self._nodes_u, self._nodes_s)
-        i[k.SWITCHES], i[k.LAST_SWITCH] = switches, last
         self._version = -1
         self._shift(rows, row, -1)
 

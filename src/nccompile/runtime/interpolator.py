@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -19,13 +20,16 @@ from nccompile.kernels.timelaw import TRAPEZOID
 from nccompile.runtime.ring import Mark, RingBuffer
 from nccompile.toolpath.columns import EventKind, Floats
 
-__all__ = ["OVERRIDE_MAX", "OVERRIDE_MIN", "Inputs", "Interpolator", "Outputs", "Saved", "Status"]
+__all__ = ["OVERRIDE_MAX", "OVERRIDE_MIN", "Inputs", "Interpolator", "Outputs", "Saved", "Status", "describe"]
 
 OVERRIDE_MIN = 0.01
 """Least override; lower values act as this one (SoftMotion §6.2.8)."""
 
 OVERRIDE_MAX = 10.0
 """Greatest override; the machine's limits hold at any override."""
+
+
+_STOPS = ("emergency_stop", "quick_stop", "slow_stop", "wait_at_next_stop")
 
 
 class Status(IntEnum):
@@ -67,6 +71,11 @@ class Inputs:
     abort: bool = False
     quick_deceleration: float = 0.0
     last_way_pos: float = 0.0
+
+    @property
+    def stops(self) -> tuple[str, ...]:
+        """The stops that are on, by their names."""
+        return tuple(name for name in _STOPS if getattr(self, name))
 
     def to_kernel(self, cycle: float, *, patient: bool) -> k.Inputs:
         """The inputs as the kernel takes them; the strongest stop wins."""
@@ -115,6 +124,23 @@ class Outputs:
     underrun: bool = False
 
 
+def describe(
+    out: Outputs, burst: Burst, stepper: Stepper, rows: k.Rows, head: int, last_way_pos: float, cycle: float
+) -> None:
+    """Fills the outputs after a call of the kernel, except those of M functions and missing rows."""
+    i = stepper.i
+    if len(burst):
+        out.velocity = float(burst.velocity[-1])
+        out.status = Status(int(burst.status[-1]))
+        out.set_position = burst.position[-1].copy()
+        out.way_pos = last_way_pos + out.velocity * cycle
+    out.done = out.status is Status.FINISHED
+    out.working = Status.ACCEL <= out.status <= Status.WAIT and not out.done
+    out.source_line = int(i[k.LINE_NO]) if out.working else -1
+    out.last_switch, out.switches = int(i[k.LAST_SWITCH]), int(i[k.SWITCHES])
+    out.tangent = stepper.tangent(rows, head) if out.working else (0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True)
 class Saved:
     """A state of an `Interpolator` to come back to."""
@@ -140,6 +166,11 @@ class Interpolator:
         self._stepper = Stepper(self.start)
         self.outputs = Outputs(set_position=np.array(self.start, np.float64))
 
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Inputs that keep the path where it rests."""
+        return self.inputs.stops
+
     def advance(self, n: int, *, patient: bool = True) -> Burst:
         """Runs up to n cycles with the present inputs.
 
@@ -152,17 +183,8 @@ class Interpolator:
             inputs=self.inputs.to_kernel(self.cycle, patient=patient), n=n,
         )  # fmt: skip
         head = view.head + burst.dropped
-        out, i = self.outputs, self._stepper.i
-        if len(burst):
-            out.velocity = float(burst.velocity[-1])
-            out.status = Status(int(burst.status[-1]))
-            out.set_position = burst.position[-1].copy()
-            out.way_pos = self.inputs.last_way_pos + out.velocity * self.cycle
-        out.done = out.status is Status.FINISHED
-        out.working = Status.ACCEL <= out.status <= Status.WAIT and not out.done
-        out.source_line = int(i[k.LINE_NO]) if out.working else -1
-        out.last_switch, out.switches = int(i[k.LAST_SWITCH]), int(i[k.SWITCHES])
-        out.tangent = self._stepper.tangent(view.rows, head) if out.working else (0.0, 0.0, 0.0)
+        out = self.outputs
+        describe(out, burst, self._stepper, view.rows, head, self.inputs.last_way_pos, self.cycle)
         out.underrun = not view.complete and (
             head >= view.tail or self._brakes_early(view.rows, head, view.tail)
         )
@@ -182,6 +204,11 @@ class Interpolator:
         """The state before a burst that may have to be taken back."""
         return Saved(self._stepper.snapshot(), self.ring.mark())
 
+    def checkpoint(self) -> Callable[[], None]:
+        """Keeps the present state; calling what is returned comes back to it."""
+        saved = self.snapshot()
+        return lambda: self.restore(saved)
+
     def restore(self, saved: Saved) -> None:
         """Comes back to a snapshot; nothing may have been pushed to the ring in between."""
         self._stepper.restore(saved.stepper)
@@ -191,4 +218,6 @@ class Interpolator:
     def _brakes_early(self, rows: k.Rows, head: int, tail: int) -> bool:
         """Whether the running segment is to end slower than planned because rows are missing."""
         row = min(head + int(self._stepper.i[k.ROW]), tail - 1)
+        if self._stepper.i[k.STARVED] == 1:
+            return True
         return bool(rows.v_now[row] < rows.v_end[row]) and self._stepper.f[k.OVERRIDE] == 1.0

@@ -1,37 +1,33 @@
 """The interpolator that runs a path in both directions (SMC_Interpolator2Dir, SoftMotion §6.2.10).
 
-A negative override runs back, as a hand wheel does.  The plan is a motion s(T) over its own time T; the block
-runs T at a rate r of -1 .. 1:
+A negative override runs back, as a hand wheel does.  The block holds the path and its backward path
+(`runtime.backwards`) and runs one of them with the kernel of the ordinary interpolator:
 
-    T' = r     path velocity r v     path acceleration r² a + r' v       (v, a: of the plan)
+    forward   A ----->----- B ---      override changes its sign: brakes to rest,
+                            |          goes on from the same place on the other path
+    backward  A -----<----- B
 
-At a constant rate nothing is beyond the plan.  While the rate changes, r' is chosen each cycle so that the path
-acceleration stays in the segment's -decel .. accel; where the plan itself needs all of it, the rate waits.
-The whole path must be at hand, and trapezoids be its time law; jumps and M functions are not for it.
+So every promise of the ordinary one holds in both directions, for every planner.  Forwards M functions wait, as
+often as they are reached; backwards they are passed.  At its start the path waits for an override above 0.
 """
 
 from __future__ import annotations
 
-from bisect import bisect_right
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 
 import numpy as np
 
 from nccompile.backend.samples import rows_of
-from nccompile.errors import UsageError
 from nccompile.kernels import interpolator as k
-from nccompile.kernels.curves import NODES, tabulate
-from nccompile.kernels.timelaw import TRAPEZOID, law_distance, law_times, law_velocity
-from nccompile.toolpath.columns import Floats, Kind, Toolpath
+from nccompile.kernels.stepper import Burst, Snapshot, Stepper
+from nccompile.runtime.backwards import backward
+from nccompile.runtime.interpolator import OVERRIDE_MIN, Inputs, Outputs, Status, describe
+from nccompile.runtime.ring import Event
+from nccompile.toolpath.columns import EventKind, Floats, Toolpath
 
-__all__ = ["Direction", "Interpolator2Dir"]
-
-_RATE_CHANGE = 20.0
-"""Greatest change of the rate [1/s]: from rest to the plan in 50 ms where the plan stands still."""
-
-_ROOM = 0.99
-"""Share of the segment's acceleration that a change of the rate uses: the plan goes on within the cycle."""
+__all__ = ["Direction", "Interpolator2Dir", "Turn"]
 
 
 class Direction(IntEnum):
@@ -42,119 +38,142 @@ class Direction(IntEnum):
     POSITIVE = 1
 
 
+@dataclass(frozen=True)
+class Turn:
+    """A state of an `Interpolator2Dir` to come back to."""
+
+    stepper: Snapshot
+    way: int
+    head: int
+
+
 @dataclass
 class Interpolator2Dir:
-    """The block; call `advance` once a cycle.
+    """The block, with the inputs and outputs of `Interpolator`; call `advance` as there.
 
-    path: planned, at hand as a whole;  cycle [s];  override: -1 .. 1, beyond acts as the bound.
-    set_position f8 (axes,);  direction;  velocity: path length of the last cycle over its time, negative
-    backwards [mm/s];  source_line;  at_end: the end is reached;  at_start: so is the start, backwards.
-    Raises: UsageError: the path has jumps or M functions.
+    path: planned, at hand as a whole;  cycle [s];  acceleration: bounds quick stops, see `RingBuffer`.
+    inputs.override: below 0 runs back, between -0.01 and 0.01 stands.  direction: of the last cycle.
     """
 
     path: Toolpath
     cycle: float
-    override: float = 1.0
-    set_position: Floats = field(init=False)
+    acceleration: Floats | None = None
+    inputs: Inputs = field(default_factory=Inputs)
+    outputs: Outputs = field(init=False)
     direction: Direction = field(default=Direction.STANDSTILL, init=False)
-    velocity: float = field(default=0.0, init=False)
-    source_line: int = field(default=-1, init=False)
 
     def __post_init__(self) -> None:
-        kinds = self.path.kind
-        if ((kinds == Kind.SET_POSITION) | (kinds == Kind.M_FUNCTION)).any():
-            raise UsageError("a path that runs in both directions cannot jump or wait for an M function")
-        self._rows = rows_of(self.path)
-        self._laws: list[tuple[int, float, float, float, float, float, float]] = []
-        self._begins: list[float] = []
-        self._end = self._tabulate_laws()
-        self._nodes = np.zeros(NODES), np.zeros(NODES)
-        self._tabulated, self._count = -1, 0
-        self._time = 0.0
-        self._rate = 0.0
-        self._way = 0.0
-        self.set_position = np.array(self.path.start, np.float64)
+        self._paths = (self.path, backward(self.path))
+        self._rows = tuple(rows_of(path, self.acceleration) for path in self._paths)
+        self._way, self._head = 0, 0  # 0 forward, 1 backward; the first row that is not done
+        self._stepper = Stepper(self.path.start)
+        self.outputs = Outputs(set_position=np.array(self.path.start, np.float64))
 
     @property
-    def at_end(self) -> bool:
-        """Whether the end of the path is reached."""
-        return self._time >= self._end
+    def held(self) -> tuple[str, ...]:
+        """Inputs that keep the path where it rests."""
+        stands = abs(self.inputs.override) < OVERRIDE_MIN or (self.at_start and self.inputs.override < 0.0)
+        return (*self.inputs.stops, *(("override",) if stands else ()))
 
     @property
     def at_start(self) -> bool:
-        """Whether the path stands at its start."""
-        return self._time <= 0.0
+        """Whether the path stands at its start, run back to it."""
+        return self._way == 1 and self._head >= len(self.path)
 
-    def advance(self) -> Floats:
-        """One cycle; returns the set position."""
-        wanted = min(max(self.override, -1.0), 1.0)
-        rate = self._next_rate(wanted)
-        time = min(max(self._time + 0.5 * (self._rate + rate) * self.cycle, 0.0), self._end)
-        if time in (0.0, self._end) and (rate > 0.0) == (time > 0.0):
-            rate = 0.0  # the plan is at rest there
-        self._time, self._rate = time, rate
-        way = self._place()
-        self.velocity = (way - self._way) / self.cycle
-        self._way = way
-        self.direction = Direction(int(np.sign(rate)))
-        return self.set_position
+    def advance(self, n: int, *, patient: bool = True) -> Burst:
+        """Runs up to n cycles with the present inputs; one, while the direction is to change."""
+        turning = self._turn()
+        count = len(self.path)
+        if self.at_start and not turning and self.inputs.override < 0.0:
+            burst = self._stand(n)
+        else:
+            inputs = self._inputs(turning)
+            burst = self._stepper.run(
+                self._rows[self._way], self._head, count, complete=True, version=self._way, inputs=inputs,
+                n=1 if turning and self._stepper.f[k.V] != 0.0 else n,
+            )  # fmt: skip
+            self._head += burst.dropped
+            if self._way == 1 and burst.reason == k.FINISHED:
+                burst.status[-1] = Status.WAIT
+                burst = Burst(*burst[:6], k.RAN, burst.dropped)
+        self._describe(burst)
+        return burst
 
-    def _tabulate_laws(self) -> float:
-        """The time laws of the moving rows and where they begin; returns the duration of the plan."""
-        path, v, begin = self.path, 0.0, 0.0
-        assert path.v_limit is not None
-        assert path.v_end is not None
-        way = 0.0
-        self._ways: list[float] = []
-        for row in np.flatnonzero(path.length > 0.0).tolist():
-            top = min(float(path.feed[row]), float(path.v_limit[row]))
-            numbers = (path.length[row], v, top, path.v_end[row], path.accel[row], path.decel[row])
-            t1, t2, t3, peak, end = law_times(*(float(number) for number in numbers))
-            self._laws.append((row, t1, t2, t3, v, peak, end))
-            self._begins.append(begin)
-            self._ways.append(way)
-            begin, v, way = begin + t1 + t2 + t3, end, way + float(path.length[row])
-        return begin
+    def _inputs(self, turning: bool) -> k.Inputs:
+        """The inputs of the kernel: what is left of an override without its sign; a slow stop before a turn."""
+        size = max(abs(self.inputs.override), OVERRIDE_MIN)
+        held = replace(self.inputs, override=size, slow_stop=self.inputs.slow_stop or turning)
+        if self._way == 1:
+            held = replace(held, wait_at_next_stop=False)
+        return held.to_kernel(self.cycle, patient=False)
 
-    def _law(self) -> tuple[int, float]:
-        """Index of the law at the present time and the time in it."""
-        at = max(0, bisect_right(self._begins, self._time) - 1)
-        return at, self._time - self._begins[at]
+    def _turn(self) -> bool:
+        """Changes the path where the direction has to change and the motion rests; True while it does not rest."""
+        override = self.inputs.override
+        if abs(override) < OVERRIDE_MIN:
+            return True
+        if (override < 0.0) == (self._way == 1):
+            return False
+        f, i = self._stepper.f, self._stepper.i
+        if i[k.STARTED] == 0 or f[k.V] != 0.0 or i[k.MODE] == k.TABLE:
+            return bool(i[k.STARTED] == 1)
+        head, s = self._head, 0.0
+        inside = i[k.RUNNING] == 1 and head < len(self.path)
+        if inside:
+            s = float(self.path.length[head] if self._way == 0 else self._paths[1].length[head]) - float(
+                f[k.S]
+            )
+        self._way = 1 - self._way
+        self._head = len(self.path) - head - int(inside)
+        self._stepper.place(self._rows[self._way], self._head, s, self._inputs(turning=False))
+        return False
 
-    def _next_rate(self, wanted: float) -> float:
-        """The rate after this cycle, as near to the wanted one as the acceleration allows."""
-        if not self._laws:
-            return 0.0
-        at, t = self._law()
-        row, t1, t2, t3, v0, peak, v1 = self._laws[at]
-        v = law_velocity(TRAPEZOID, t, t1, t2, t3, v0, peak, v1)
-        a = 0.0
-        if t < t1:
-            a = (peak - v0) / t1
-        elif t > t1 + t2 and t3 > 0.0:
-            a = (v1 - peak) / t3
-        used = self._rate * self._rate * a
-        up = max(_ROOM * float(self.path.accel[row]) - used, 0.0)
-        down = max(_ROOM * float(self.path.decel[row]) + used, 0.0)
-        most = min(up / v, _RATE_CHANGE) if v > 0.0 else _RATE_CHANGE
-        least = min(down / v, _RATE_CHANGE) if v > 0.0 else _RATE_CHANGE
-        change = min(max(wanted - self._rate, -least * self.cycle), most * self.cycle)
-        return self._rate + change
+    def _stand(self, n: int) -> Burst:
+        """n cycles at the start of the path, where nothing moves."""
+        out = self.outputs
+        return Burst(
+            np.repeat(out.set_position[None, :], n, axis=0), np.zeros(n), np.full(n, -1, np.int32),
+            np.full(n, Status.WAIT, np.uint8), np.full(n, out.switches, np.uint32), np.zeros((0, 3), np.int64),
+            k.RAN, 0,
+        )  # fmt: skip
 
-    def _place(self) -> float:
-        """Puts the set position at the present time; returns the path length there."""
-        if not self._laws:
-            return 0.0
-        at, t = self._law()
-        row, t1, t2, t3, v0, peak, v1 = self._laws[at]
-        s = min(law_distance(TRAPEZOID, t, t1, t2, t3, v0, peak, v1), float(self.path.length[row]))
-        if self.at_end:
-            s = float(self.path.length[row])
-        curve = int(self.path.curve[row])
-        if curve >= 0 and self.path.kind[row] != Kind.ARC and self._tabulated != row:
-            parameters = self.path.curves.parameters[curve]
-            self._count = tabulate(int(self.path.kind[row]), parameters, *self._nodes)
-            self._tabulated = row
-        k.locate(self._rows, row, s, *self._nodes, self._count, self.set_position)
-        self.source_line = int(self.path.line[row])
-        return self._ways[at] + s
+    def _describe(self, burst: Burst) -> None:
+        """The outputs after a call."""
+        rows, out = self._rows[self._way], self.outputs
+        describe(out, burst, self._stepper, rows, self._head, self.inputs.last_way_pos, self.cycle)
+        moved = len(burst) > 0 and burst.velocity[-1] > 0.0
+        self.direction = Direction((1 - 2 * self._way) if moved else 0)
+        out.done = out.done and self._way == 0
+        out.m, out.m_k, out.m_l, out.m_o = 0, 0.0, 0.0, ""
+        if self._stepper.i[k.M_ROW] >= 0:
+            event = next(e for e in self._events(self._head) if e.kind == EventKind.M_FUNCTION)
+            out.m, out.m_k, out.m_l, out.m_o = event.number, event.k, event.l, event.o
+
+    def _events(self, row: int) -> Iterable[Event]:
+        """The events of a row of the forward path."""
+        e = self.path.events
+        for at in np.flatnonzero(e.segment == row).tolist():
+            name = self.path.names[e.o[at]] if e.o[at] >= 0 else ""
+            yield Event(
+                int(e.kind[at]),
+                int(e.number[at]),
+                float(e.position[at]),
+                float(e.k[at]),
+                float(e.l[at]),
+                name,
+            )
+
+    def snapshot(self) -> Turn:
+        """The state before a burst that may have to be taken back."""
+        return Turn(self._stepper.snapshot(), self._way, self._head)
+
+    def checkpoint(self) -> Callable[[], None]:
+        """Keeps the present state; calling what is returned comes back to it."""
+        saved = self.snapshot()
+        return lambda: self.restore(saved)
+
+    def restore(self, saved: Turn) -> None:
+        """Comes back to a snapshot."""
+        self._stepper.restore(saved.stepper)
+        self._way, self._head = saved.way, saved.head
+        self.outputs.set_position = saved.stepper.here.copy()

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from nccompile.backend.samples import quick_decelerations
 from nccompile.errors import UsageError
 from nccompile.kernels.interpolator import Rows
 from nccompile.toolpath.columns import CURVE_PARAMETERS, Floats, Toolpath
@@ -273,7 +274,7 @@ class RingBuffer:
         rows.start[self._tail] = chunk.start if begin == 0 else chunk.target[begin - 1]
         rows.start[self._tail + 1 : to.stop] = chunk.target[begin : end - 1]
         curve = chunk.curve[begin:end]
-        rows.brake[to] = self._brakes(chunk, begin, end, rows.start[to])
+        rows.brake[to] = quick_decelerations(chunk, self._acceleration, begin, end)
         curved = np.flatnonzero(curve >= 0)
         own = (self._tail + curved).astype(np.int32)
         rows.curve[to] = -1
@@ -289,19 +290,6 @@ class RingBuffer:
         borders = np.searchsorted(events.segment, np.arange(begin, end + 1)) - event_begin + self._event_tail
         rows.event_begin[to] = borders[:-1]
         rows.event_end[to] = borders[1:]
-
-    def _brakes(self, chunk: Toolpath, begin: int, end: int, start: Floats) -> Floats | float:
-        """Shape (n,): the deceleration that the axes allow along straight rows; on curves that of the plan."""
-        if self._acceleration is None:
-            return np.inf
-        length, decel = chunk.length[begin:end], chunk.decel[begin:end]
-        way = np.abs(chunk.target[begin:end] - start).max(axis=0, initial=0.0)
-        moving = np.flatnonzero(way > 0.0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            slope = np.abs(chunk.target[begin:end] - start)[:, moving] / length[:, None]
-            allowed = (self._acceleration[moving] / slope).min(axis=1, initial=np.inf)
-        straight = (chunk.curve[begin:end] < 0) & ((chunk.profile[begin:end] & 0x7FFF) == 0) & (length > 0.0)
-        return np.where(straight, allowed, decel)
 
     def _compact(self) -> None:
         """Moves the rows at hand to the front of the other bank and switches to it."""

@@ -30,6 +30,7 @@ from nccompile.runtime.drives.protocol import ALL_CHECKS, NO_ACCELERATION_CHECK,
 from nccompile.runtime.drives.virtual import VirtualDrives
 from nccompile.runtime.feeder import Feeder
 from nccompile.runtime.interpolator import Interpolator, Status
+from nccompile.runtime.interpolator2dir import Interpolator2Dir
 from nccompile.runtime.output import Output
 from nccompile.runtime.report import MEntry, RunReport, SwitchEntry
 from nccompile.runtime.ring import RingBuffer
@@ -39,8 +40,6 @@ from nccompile.source import NOWHERE, Span
 from nccompile.toolpath.columns import Toolpath
 
 __all__ = ["CyclicTask", "Options"]
-
-_STOPS = ("emergency_stop", "quick_stop", "slow_stop", "wait_at_next_stop")
 
 _BRAKING = 64
 """Cycles of a burst while the path brakes after a fault: few are thrown away once it stands."""
@@ -53,7 +52,8 @@ class Options:
     realtime: cycles at their deadlines instead of as fast as possible;  override: factor on velocities;
     commands: inputs that change at times;  m_delay: seconds until an M function is acknowledged, 0: in the
     next cycle, None: only by a command;  burst: greatest number of cycles between two looks at the inputs;
-    vel_mode: time law, None: that of the machine;  file: name of the program in diagnostics.
+    vel_mode: time law, None: that of the machine;  two_way: the path is held as a whole, a negative override
+    runs it back;  file: name of the program in diagnostics.
     """
 
     realtime: bool = False
@@ -62,6 +62,7 @@ class Options:
     m_delay: float | None = 0.0
     burst: int = BURST
     vel_mode: int | None = None
+    two_way: bool = False
     file: str = "program"
 
 
@@ -80,14 +81,20 @@ class CyclicTask:
         drives: Drives | None = None,
         trace: Trace | None = None,
     ) -> None:
-        supply = iter(chunks)
+        two_way = options is not None and options.two_way
+        supply = iter([Toolpath.join(held)] if two_way and (held := list(chunks)) else chunks)
         first = next(supply, None)
         path = Toolpath.empty() if first is None else first
         kinematics = build(machine, path.axes)
         self.machine, self.options = machine, options or Options()
         self.drives: Drives = VirtualDrives(machine, kinematics.axes) if drives is None else drives
-        self.ring = RingBuffer(path.axes, machine.queue, acceleration=limits(machine, path.axes).acceleration)
-        self.interpolator = Interpolator(self.ring, path.start, machine.cycle)
+        acceleration = limits(machine, path.axes).acceleration
+        self.ring = RingBuffer(path.axes, machine.queue, acceleration=acceleration)
+        self.interpolator: Interpolator | Interpolator2Dir
+        if two_way:
+            self.interpolator = Interpolator2Dir(path, machine.cycle, acceleration)
+        else:
+            self.interpolator = Interpolator(self.ring, path.start, machine.cycle)
         self.report = RunReport(machine.name, machine.cycle)
         self._clock = Clock(machine.cycle) if self.options.realtime else None
         self.output = Output(
@@ -95,7 +102,8 @@ class CyclicTask:
         )
         self._kinematics, self._path_axes = kinematics, path.axes
         self._is_empty = first is None
-        self._feeder = Feeder(path, supply, self.ring, machine.low_water)
+        fed = Toolpath.empty(path.axes) if two_way else path
+        self._feeder = Feeder(fed, supply, self.ring, machine.low_water)
         self._schedule = Schedule(self.options.commands)
         self._is_starved = False  # the buffer is full and still too short to look ahead
         self._m: MEntry | None = None  # the M function that waits
@@ -152,14 +160,14 @@ class CyclicTask:
         if self._clock is None:
             self._feeder.refill()
             expect_work(self.output.now)
-        saved = self.interpolator.snapshot() if n > 1 else None
+        go_back = self.interpolator.checkpoint() if n > 1 else None
         burst = self.interpolator.advance(n, patient=patient)
         jumped = burst.reason == k.JUMPED
         watch = NO_ACCELERATION_CHECK if inputs.emergency_stop or inputs.abort else ALL_CHECKS
         end = self._standing_from(burst, n)
         done = self.output.put(burst, 0, len(burst) - int(jumped) if end is None else end, watch)
-        if self.output.fault is not None and saved is not None and done < len(burst):
-            self.interpolator.restore(saved)
+        if self.output.fault is not None and go_back is not None and done < len(burst):
+            go_back()
             burst, jumped = self.interpolator.advance(done, patient=patient), False
         inputs.ack_m = by_hand
         self._log_switches(burst, done)
@@ -236,7 +244,7 @@ class CyclicTask:
         if out.m and not inputs.emergency_stop:
             held = self.options.m_delay is None and not inputs.ack_m
         else:
-            held = any(getattr(inputs, name) for name in _STOPS)
+            held = bool(self.interpolator.held)
         if not held:
             return None
         others = np.flatnonzero((burst.status != Status.WAIT) | (burst.velocity != 0.0))
@@ -252,10 +260,10 @@ class CyclicTask:
                 out.source_line, "acknowledge it with a command ack_m=1, or after a delay",
             )  # fmt: skip
         else:
-            stops = [name for name in _STOPS if getattr(inputs, name)]
+            stops = self.interpolator.held
             self._report(
                 "NC705", Severity.WARNING, f"the run was stopped at {time} and not released: {', '.join(stops)}",
-                out.source_line, f"release it with a later command {stops[0]}=0",
+                out.source_line, f"release it with a later command {stops[0]}={1 if stops[0] == 'override' else 0}",
             )  # fmt: skip
         self._outcome = "stopped"
 
