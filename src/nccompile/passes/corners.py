@@ -284,11 +284,12 @@ def _ends(corners: Fillings, owner: npt.NDArray[np.intp], share: Floats, cuts: _
     begin, end = cuts.end[cuts.place[owner]], cuts.start[cuts.place[owner + 1]]
     target = begin + share[:, None] * (end - begin)
     inner = share < 1.0
-    sums = corners.rows.reshape(-1, 3, 4).sum(axis=2)
+    c = corners.rows.reshape(-1, 3, 4)
+    sums = c[:, :, 0] + c[:, :, 1] + c[:, :, 2] + c[:, :, 3]
     for plane, axes in ((Plane.SPACE, (0, 1, 2)), *PLANE_AXES.items()):
         own = np.flatnonzero(inner & (corners.plane == plane))
-        for c, axis in enumerate(axes):
-            target[own, axis] = sums[own, c]
+        for i, axis in enumerate(axes):
+            target[own, axis] = sums[own, i]
     target[~inner] = end[~inner]
     return np.asarray(target)
 
@@ -351,12 +352,13 @@ def _may_bend(path: Toolpath, inside: Flags, angle: float) -> Flags:
     if n < 2:
         return out
     steps = (path.target - path.starts())[:, :3]
-    length = np.sqrt((steps * steps).sum(axis=1))
+    x, y, z = steps[:, 0], steps[:, 1], steps[:, 2]
+    length = np.sqrt(x * x + y * y + z * z)
     straight = path.curve < 0
     usable = (path.kind >= Kind.LINE) & (path.kind <= Kind.POLYNOMIAL) & (path.profile == 0)
     usable &= (length > COINCIDENT) | (~straight & (path.length > COINCIDENT))
     usable &= inside
-    dot = (steps[:-1] * steps[1:]).sum(axis=1)
+    dot = x[:-1] * x[1:] + y[:-1] * y[1:] + z[:-1] * z[1:]
     bends = dot < np.cos(angle) * length[:-1] * length[1:]
     out[:-1] = usable[:-1] & usable[1:] & (bends | ~straight[:-1] | ~straight[1:])
     return out

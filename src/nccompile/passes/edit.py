@@ -117,14 +117,14 @@ class Links:
 
     @classmethod
     def merged(cls, parts: Sequence[Links]) -> Links:
-        """All links of several parts, in order."""
+        """All links of several parts, each in order; where two begin at one place, those of the first part first."""
         segment, row = (
             np.concatenate([getattr(part, name) for part in parts]) for name in ("segment", "row")
         )
         p0, p1, q0, q1 = (
             np.concatenate([getattr(part, name) for part in parts]) for name in ("p0", "p1", "q0", "q1")
         )
-        order = np.lexsort((row, p0, segment))
+        order = np.argsort(segment + p0, kind="stable")
         return cls(segment[order], p0[order], p1[order], row[order], q0[order], q1[order])
 
 
