@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isclose, radians
+from math import cos, isclose, radians
 from pathlib import Path
 
 import pytest
@@ -50,6 +50,8 @@ def test_axes_and_lines_are_named() -> None:
     build.still(Kind.DWELL, seconds=0.5)
     report, _ = losses(build.path(), "look-ahead")
     assert report.limits == {"X": pytest.approx(300 / 500 - 300 / 900)}
+    third = 100 / 50 - 100 / (500 / cos(radians(30)))  # Y alone would allow so much at 60 degrees
+    assert report.feed == pytest.approx(100 / 50 - 100 / 500 + third)
     assert report.waits == pytest.approx(0.5)
     assert report.corners > 0.0
     assert report.places[0].line == 1

@@ -6,7 +6,8 @@
     corners    ramps up and down: stops, sharp bends, changes of the feed, short segments between them
     waits      dwells
 
-Rapids count with the velocity that they are given.  All numbers are seconds at override 1.
+Of the time at feed, `feed` says how much is due to the program's F: what segments would save at the velocity that
+machine and geometry allow.  Rapids count with the velocity that they are given.  All numbers are seconds at override 1.
 """
 
 from __future__ import annotations
@@ -43,12 +44,13 @@ class Place:
 class Losses:
     """Adds up planned chunks on their way.
 
-    at_feed, corners, waits [s];  limits: seconds by axis letter or `CURVES`;
+    at_feed, feed, corners, waits [s];  limits: seconds by axis letter or `CURVES`;
     places: the slowest ones.
     """
 
     settings: PlanSettings
     at_feed: float = 0.0
+    feed: float = 0.0
     corners: float = 0.0
     waits: float = 0.0
     limits: dict[str, float] = field(default_factory=dict)
@@ -73,6 +75,9 @@ class Losses:
         by_limit = length / top - length / feed
         by_corner = np.maximum(time[moving] - length / top, 0.0)
         self.at_feed += float((length / feed).sum())
+        allowed = np.maximum(top, chunk.v_limit[moving])
+        cutting = chunk.kind[moving] != Kind.POSITIONING
+        self.feed += float((length / top - length / allowed)[cutting].sum())
         self.corners += float(by_corner.sum())
         names = np.array([*chunk.axes, CURVES])
         axis = self._slowest_axis(chunk)[moving]
@@ -107,6 +112,7 @@ class Losses:
             "planner": self.settings.planner,
             "job_time": self.job_time,
             "time_at_feed": self.at_feed,
+            "of_it_lost_to_feed": self.feed,
             "lost_to_corners": self.corners,
             "lost_to_limits": dict(sorted(self.limits.items())),
             "waits": self.waits,
