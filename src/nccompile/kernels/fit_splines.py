@@ -39,7 +39,8 @@ FREE, LED, HELD = 0, 1, 2
 
 _FIRST = 0.65  # part of the spans that a first guess asks for
 _ORDER = 0.2  # errors fall with the fifth power of the span
-_TURNS = 4  # of knots moving and knots held, for one window
+_TURNS = 6  # of knots moving and knots held, for one window
+_IDLE = 0.97  # of the error before: a turn that leaves more was the last one
 _CYCLES = 30  # of inserting knots
 _ROUGH = 200.0  # times the tolerance: a spline so far off tells nothing of where its knots should be
 _FRESH = 0.1  # weight of errors along the curve when knots are new,
@@ -51,9 +52,9 @@ _STIFF_DAMP = 0.3  # and squared errors
 _REACH = 0.25  # part of a span that a knot moves by at most
 _CROWD = 0.3  # a span is at least this part of its shorter neighbour
 _AROUND = 4  # spans around a new knot that are solved again
-_NEAR = 2  # spans around a new knot that get no other one, 1 where the error is
-_FAR = 5.0  # times the tolerance
-_ENOUGH = 20.0  # samples a span of the first guess that the least squares look at
+_NEAR = 3  # spans around a new knot that get no other one, 1 where the error is
+_FAR = 10.0  # times the tolerance
+_ENOUGH = 12.0  # samples a span of the first guess that the least squares look at
 _SAMPLES = 25.0  # samples a span of the first guess, at least; four times as many if that fails
 
 
@@ -179,7 +180,7 @@ def _measure(
         b += 1
     return chord_errors(
         places[low : high + 1], data[low : high + 1], t[a : b + 8], b - a + 1, rows[a : b + 1], u[low : high + 1],
-        tangent[low : high + 1], errors[a : b + 1], True,
+        tangent[low : high + 1], errors[a : b + 1], spans > 0,
     )  # fmt: skip
 
 
@@ -197,42 +198,6 @@ def _damp(
             error = max(error, float(errors[j + 1]))
         along[j] = min(1.0, least + _DAMP * error / float(t[j + 4] - t[j + 3]))
         stiff[j] = _STIFF * tolerance * tolerance + _STIFF_DAMP * error * error
-
-
-@kernel
-def _relax(
-    places: Floats, data: Floats, u: Floats, weight: Floats, tangent: Floats, t: Floats, spans: int, rows: Floats,
-    errors: Floats, a: int, b: int, tolerance: float, careful: bool, step: int, kinds: Ints, states: Floats,
-) -> bool:  # fmt: skip
-    """Fits the spans a..b with their new knots; false if it cannot.  `careful`: knots stay, errors count all ways."""
-    along = np.zeros(spans)
-    stiff = np.zeros(spans)
-    window = np.array([a, b, step, 0])
-    for j in range(a, b + 1):
-        along[j] = 1.0 if careful else _FRESH
-    if not _solve_window(data, u, weight, tangent, t, spans, rows, window, along, stiff, kinds, states):
-        return False
-    worst = _measure(places, data, u, tangent, t, spans, rows, errors, a, b)
-    for turn in range(_TURNS):
-        if worst <= tolerance:
-            break
-        rough = careful or worst > _ROUGH * tolerance
-        if not rough:
-            _damp(t, spans, errors, a, b, tolerance, _ALONG_MOVING, along, stiff)
-            window[3] = 1
-            if not _solve_window(
-                data, u, weight, tangent, t, spans, rows, window, along, stiff, kinds, states
-            ):
-                return False
-            window[3] = 0
-        if not careful:
-            _damp(t, spans, errors, a, b, tolerance, _ALONG, along, stiff)
-        if not _solve_window(data, u, weight, tangent, t, spans, rows, window, along, stiff, kinds, states):
-            return False
-        worst = _measure(places, data, u, tangent, t, spans, rows, errors, a, b)
-        if rough and turn > 0:
-            break
-    return worst < inf
 
 
 @kernel
@@ -307,8 +272,9 @@ def _insert(
 
 
 @kernel
-def _guess(points: Floats, way: Floats, tolerance: float, kinds: Ints, states: Floats) -> int:
+def _guess(points: Floats, way: Floats, tolerance: float, states: Floats) -> int:
     """Roughly how many spans a run needs, or some fewer: from fits to a few of its vertices, knots evenly spaced."""
+    kinds = np.zeros(2, np.int64)
     n = len(way) - 1
     dims = points.shape[1]
     spans = min(n, 1)
@@ -334,7 +300,7 @@ def _guess(points: Floats, way: Floats, tolerance: float, kinds: Ints, states: F
                 places, u, weight, tangent, t, spans, rows, window, along, along, kinds, states
             ):
                 return spans
-            chord_errors(places, places, t, spans, rows, u, tangent, errors, False)
+            chord_errors(places, places, t, spans, rows, u, tangent, errors, window[3] > 0)
         total = 0.0
         for j in range(spans):
             total += float(np.exp(_ORDER * np.log(max(float(errors[j]) / tolerance, 1e-3))))
@@ -354,51 +320,6 @@ def _even_knots(extent: float, spans: int, t: Floats) -> None:
 
 
 @kernel
-def _refine(
-    places: Floats, data: Floats, u: Floats, weight: Floats, tangent: Floats, spans: int, extra: Floats, way: Floats,
-    tolerance: float, careful: bool, kinds: Ints, states: Floats, t: Floats, rows: Floats, ends: Floats, most: int,
-) -> int:  # fmt: skip
-    """Fits and inserts knots until the tolerance holds; the number of spans, or 0.  ends: the way at the knots, out."""
-    samples = u.copy()
-    _even_knots(float(way[len(way) - 1]), spans, t)
-    errors = np.full(most, inf)
-    step = max(1, len(u) // int(spans * _ENOUGH))
-    fresh = np.ones(most, np.bool_)
-    for _cycle in range(_CYCLES):
-        a = 0
-        while a < spans:
-            if not fresh[a]:
-                a += 1
-                continue
-            b = a
-            j = a
-            while j < min(b + 2 * _AROUND + 2, spans):
-                if fresh[j]:
-                    b = j
-                j += 1
-            low = max(a - _AROUND, 0)
-            high = min(b + _AROUND, spans - 1)
-            if not _relax(
-                places, data, u, weight, tangent, t, spans, rows, errors, low, high, tolerance, careful, step, kinds,
-                states,
-            ):  # fmt: skip
-                return 0
-            a = b + 1
-        worst = 0.0
-        for j in range(spans):
-            worst = max(worst, float(errors[j]))
-        _ways(samples, u, t, spans, ends)
-        if worst <= tolerance and extra.shape[1] > 0:
-            worst = max(worst, axes_errors(extra, way, ends, spans, errors))
-        if worst <= tolerance:
-            return spans
-        spans = _insert(t, spans, rows, errors, tolerance, most, fresh)
-        if spans == 0:
-            return 0
-    return 0
-
-
-@kernel
 def _ways(samples: Floats, u: Floats, t: Floats, spans: int, ends: Floats) -> None:
     """Fills the way along the chords at each knot: samples, Shape (m,), at parameters u."""
     i = 1
@@ -415,6 +336,22 @@ def _ways(samples: Floats, u: Floats, t: Floats, spans: int, ends: Floats) -> No
 
 
 @kernel
+def _next_window(fresh: npt.NDArray[np.bool_], spans: int, a: int, window: Ints) -> bool:
+    """Finds the first and last span of the next window that has fresh ones from span a on; false if none has."""
+    while a < spans and not fresh[a]:
+        a += 1
+    b = a
+    j = a
+    while j < min(b + 2 * _AROUND + 2, spans):
+        if fresh[j]:
+            b = j
+        j += 1
+    window[0] = max(a - _AROUND, 0)
+    window[1] = min(b + _AROUND, spans - 1)
+    return a < spans
+
+
+@kernel
 def fit_spline(
     points: Floats, extra: Floats, way: Floats, tolerance: float, kinds: Ints, states: Floats, ends: Floats,
     rows: Floats, most: int,
@@ -427,27 +364,82 @@ def fit_spline(
               by the way and 0 there, by coordinates;  most: greatest number of cubics;
               ends: Shape (most + 1,), out, the way at which they end;  rows: Shape (most, 4 dims), out: powers of
               the share 0..1 of each.
+
+    Up to three attempts: as described above, with more points in between, and carefully: knots stay in the middle
+    of the spans that they cut, errors count the same in all directions.
     """
     dims = points.shape[1]
-    first = min(_guess(points, way, tolerance, kinds, states), most)
-    t = np.zeros(most + 7)
+    extent = float(way[len(way) - 1])
+    first = min(_guess(points, way, tolerance, states), most)
+    t, errors, fresh = np.zeros(most + 7), np.zeros(most), np.ones(most, np.bool_)
+    along, stiff, window = np.zeros(most), np.zeros(most), np.zeros(4, np.int64)
     for attempt in range(3):
         careful = attempt == 2
-        spacing = float(way[len(way) - 1]) / (first * _SAMPLES * (1.0 if attempt == 0 else 4.0))
+        spacing = extent / (first * _SAMPLES * (1.0 if attempt == 0 else 4.0))
         m = count_samples(way, spacing)
         places, data, tangent = np.zeros((m, dims)), np.zeros((m, dims)), np.zeros((m, dims))
         u, weight = np.zeros(m), np.zeros(m)
         fill_samples(points, way, spacing, tolerance, places, data, u, weight, tangent)
-        spans = _refine(
-            places, data, u, weight, tangent, first, extra, way, tolerance, careful, kinds, states, t, rows, ends,
-            most,
-        )  # fmt: skip
-        if spans > 0:
+        samples = u.copy()
+        window[2] = max(1, m // int(first * _ENOUGH))
+        spans = first
+        _even_knots(extent, spans, t)
+        for j in range(spans):
+            errors[j] = inf
+            fresh[j] = True
+        solved = True
+        for _cycle in range(_CYCLES):
+            after = 0
+            while solved and _next_window(fresh, spans, after, window):
+                a = int(window[0])
+                b = int(window[1])
+                after = b - _AROUND + 1 if b < spans - 1 else spans
+                for j in range(a, b + 1):
+                    along[j] = 1.0 if careful else _FRESH
+                worst = inf
+                for turn in range(2 * _TURNS + 1):
+                    # Even turns hold the knots and look at the errors, odd ones move them.
+                    rough = careful or worst > _ROUGH * tolerance
+                    window[3] = turn % 2
+                    if turn % 2 == 1 and rough:
+                        continue
+                    if turn > 0 and not careful:
+                        least = _ALONG if turn % 2 == 0 else _ALONG_MOVING
+                        _damp(t, spans, errors, a, b, tolerance, least, along, stiff)
+                    solved = _solve_window(
+                        data, u, weight, tangent, t, spans, rows, window, along, stiff, kinds, states
+                    )
+                    if not solved:
+                        break
+                    if turn % 2 == 0:
+                        before = worst
+                        worst = _measure(places, data, u, tangent, t, spans, rows, errors, a, b)
+                        idle = turn >= 4 and (rough or worst > _IDLE * before)
+                        if worst <= tolerance or idle:
+                            break
+            if not solved:
+                break
+            worst = 0.0
             for j in range(spans):
-                h = float(t[j + 4] - t[j + 3])
-                for c in range(dims):
-                    rows[j, 4 * c + 1] *= h
-                    rows[j, 4 * c + 2] *= h * h
-                    rows[j, 4 * c + 3] *= h * h * h
-            return spans
+                worst = max(worst, float(errors[j]))
+            _ways(samples, u, t, spans, ends)
+            if worst <= tolerance and extra.shape[1] > 0:
+                worst = axes_errors(extra, way, ends, spans, errors)
+            if worst <= tolerance:
+                _share_powers(t, spans, dims, rows)
+                return spans
+            spans = _insert(t, spans, rows, errors, tolerance, most, fresh)
+            if spans == 0:
+                break
     return 0
+
+
+@kernel
+def _share_powers(t: Floats, spans: int, dims: int, rows: Floats) -> None:
+    """Turns powers of u - t(j) into powers of the share 0..1 of each span."""
+    for j in range(spans):
+        h = float(t[j + 4] - t[j + 3])
+        for c in range(dims):
+            rows[j, 4 * c + 1] *= h
+            rows[j, 4 * c + 2] *= h * h
+            rows[j, 4 * c + 3] *= h * h * h

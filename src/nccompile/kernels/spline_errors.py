@@ -97,6 +97,16 @@ def chord_errors(
         square = sqrt(square)
         for c in range(dims):
             tangent[i, c] = float(speed[c]) / square if square > 0.0 else 0.0
+        h = x - x_before
+        quiet = i == 0
+        if chords and i > 0 and span == span_before:
+            # |D| is at most that of its ends and h² max |S''| / 8: most chords need no closer look.
+            curved = 0.0
+            curved_before = 0.0
+            for c in range(dims):
+                curved += float(bend[c]) * float(bend[c])
+                curved_before += float(bend_before[c]) * float(bend_before[c])
+            quiet = max(far, far_before) + 0.125 * h * h * sqrt(max(curved, curved_before)) <= errors[span]
         if not chords:
             # The data are half a sag off the vertices, so this is what chords between them would show.
             apart = 0.0
@@ -108,8 +118,7 @@ def chord_errors(
             bound = sqrt(near) + sqrt(apart)
             worst = max(worst, bound)
             errors[span] = max(float(errors[span]), bound)
-        elif i > 0:
-            h = x - x_before
+        elif not quiet:
             middle = 0.0
             second = 0.0
             third = 0.0

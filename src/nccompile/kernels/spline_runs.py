@@ -93,98 +93,84 @@ def fit_splines(
               it;  targets: Shape (high - low, k), out, end positions;  spatial: Shape (high - low,), out: -1 for a
               segment as it is, 0 for a spline in X-Y, 1 for one in space;  rows: Shape (high - low, 12), out.
     """
+    k = points.shape[1]
     count = 0
-    first = low
-    while first < high:
-        last = first + 1
+    last = low
+    while last < high:
+        first = last
+        last += 1
         while last < high and breaks[last] == 0:
             last += 1
+        n = last - first
+        axes = _axes(points, _smooth_from(breaks, first, 0), _smooth_from(breaks, last, 1))
+        dims = len(axes)
+        most = n // 2
+        stops, powers = np.zeros(most + 1), np.zeros((most, 4 * dims))
+        way = np.zeros(n + 1)
         found = 0
-        if last - first >= least:
-            found = _fit_run(
-                points, breaks, first, last, tolerance, ends[count:], parts[count:], targets[count:],
-                spatial[count:], rows[count:],
-            )  # fmt: skip
+        if n >= least:
+            places, extra = np.zeros((n + 1, dims)), np.zeros((n + 1, k - 3))
+            _localize(points, first, axes, places, extra, way)
+            kinds, states = np.zeros(2, np.int64), np.zeros((2, 4 * dims))
+            for side in range(2):
+                vertex = first if side == 0 else last
+                kinds[side] = _state(points, breaks, vertex, side, tolerance, axes, states[side])
+                for c in range(dims):
+                    states[side, 4 * c] = places[vertex - first, c]
+            found = fit_spline(places, extra, way, tolerance, kinds, states, stops, powers, most)
         if found == 0:
             for i in range(first, last):
                 ends[count] = i - low
                 parts[count] = 1.0
                 spatial[count] = -1
-                for c in range(points.shape[1]):
+                for c in range(k):
                     targets[count, c] = points[i + 1, c]
                 count += 1
-        else:
-            for i in range(found):
-                ends[count + i] += first - low
-            count += found
-        first = last
+            continue
+        row = 0
+        for j in range(found):
+            stop = float(stops[j + 1])
+            while row < n - 1 and way[row + 1] < stop:
+                row += 1
+            part = min(max((stop - float(way[row])) / float(way[row + 1] - way[row]), 0.0), 1.0)
+            ends[count + j] = first - low + row
+            parts[count + j] = part
+            spatial[count + j] = 0
+            for c in range(12):
+                rows[count + j, c] = 0.0
+            for c in range(k):
+                at = float(points[first + row, c])
+                targets[count + j, c] = at + part * float(points[first + row + 1, c] - at)
+            for c in range(3):
+                rows[count + j, 4 * c] = points[first, c]
+            for c in range(dims):
+                axis = int(axes[c])
+                end = float(points[first, axis])
+                for p in range(4):
+                    end += float(powers[j, 4 * c + p])
+                    rows[count + j, 4 * axis + p] += float(powers[j, 4 * c + p])
+                targets[count + j, axis] = end
+                if axis == 2:
+                    spatial[count + j] = 1
+            if spatial[count + j] == 0:
+                rows[count + j, 8] = 0.0
+        count += found
+        ends[count - 1] = last - 1 - low
+        parts[count - 1] = 1.0
+        for c in range(k):
+            targets[count - 1, c] = points[last, c]
     return count
 
 
 @kernel
-def _fit_run(
-    points: Floats, breaks: Ints, first: int, last: int, tolerance: float, ends: Ints, parts: Floats,
-    targets: Floats, spatial: Ints, rows: Floats,
-) -> int:  # fmt: skip
-    """The spline of the run first..last as in `fit_splines`, segments counted from `first`; 0 if there is none."""
-    n = last - first
-    k = points.shape[1]
-    axes = _axes(points, _smooth_from(breaks, first, 0), _smooth_from(breaks, last, 1))
-    dims = len(axes)
-    places = np.zeros((n + 1, dims))
-    extra = np.zeros((n + 1, k - 3))
-    way = np.zeros(n + 1)
-    for i in range(n + 1):
+def _localize(points: Floats, first: int, axes: Ints, places: Floats, extra: Floats, way: Floats) -> None:
+    """Fills the coordinates that count, the additional axes, and the way, of a run, all from its first vertex on."""
+    for i in range(len(way)):
         square = 0.0
-        for c in range(dims):
+        for c in range(len(axes)):
             places[i, c] = float(points[first + i, axes[c]] - points[first, axes[c]])
             if i > 0:
                 square += float(places[i, c] - places[i - 1, c]) * float(places[i, c] - places[i - 1, c])
-        for c in range(k - 3):
+        for c in range(extra.shape[1]):
             extra[i, c] = float(points[first + i, 3 + c] - points[first, 3 + c])
         way[i] = (float(way[i - 1]) if i > 0 else 0.0) + sqrt(square)
-    kinds = np.zeros(2, np.int64)
-    states = np.zeros((2, 4 * dims))
-    for side in range(2):
-        vertex = first if side == 0 else last
-        kinds[side] = _state(points, breaks, vertex, side, tolerance, axes, states[side])
-        for c in range(dims):
-            states[side, 4 * c] = places[vertex - first, c]
-    most = max(n // 2, 1)
-    stops = np.zeros(most + 1)
-    powers = np.zeros((most, 4 * dims))
-    found = fit_spline(places, extra, way, tolerance, kinds, states, stops, powers, most)
-    if found == 0 or found >= n:
-        return 0
-    flat = 1
-    for c in range(dims):
-        if axes[c] == 2:
-            flat = 0
-    row = 0
-    for j in range(found):
-        stop = float(stops[j + 1])
-        while row < n - 1 and way[row + 1] < stop:
-            row += 1
-        ends[j] = row
-        parts[j] = min(max((stop - float(way[row])) / float(way[row + 1] - way[row]), 0.0), 1.0)
-        spatial[j] = 1 - flat
-        for c in range(12):
-            rows[j, c] = 0.0
-        for c in range(3):
-            targets[j, c] = points[first, c]
-            if c < 2 or flat == 0:
-                rows[j, 4 * c] = points[first, c]
-        for c in range(dims):
-            end = float(points[first, axes[c]])
-            for p in range(4):
-                end += float(powers[j, 4 * c + p])
-                rows[j, 4 * int(axes[c]) + p] += float(powers[j, 4 * c + p])
-            targets[j, axes[c]] = end
-        for c in range(k - 3):
-            step = float(extra[row + 1, c] - extra[row, c])
-            targets[j, 3 + c] = float(points[first, 3 + c]) + float(extra[row, c]) + float(parts[j]) * step
-    ends[found - 1] = n - 1
-    parts[found - 1] = 1.0
-    for c in range(k):
-        targets[found - 1, c] = points[last, c]
-    return found
