@@ -24,7 +24,8 @@ SCRIPTS = st.lists(st.tuples(st.integers(0, 1200), COMMANDS), max_size=8)
 
 
 def block(path: Toolpath, cycle: float) -> Interpolator:
-    ring = RingBuffer(path.axes, len(path))
+    along = np.array([1.0, 0.5, 0.0]) / np.sqrt(1.25)  # a quick stop may use DECEL along the path
+    ring = RingBuffer(path.axes, len(path), acceleration=DECEL * along)
     ring.push(path)
     ring.close()
     ipo = Interpolator(ring, path.start, cycle)

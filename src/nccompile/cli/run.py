@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import nullcontext
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -19,6 +20,15 @@ if TYPE_CHECKING:
 
 __all__ = ["run_program"]
 
+
+class InterpolatorName(StrEnum):
+    """Interpolators (docs/runtime.md)."""
+
+    ONE_WAY = "one-way"
+    TWO_WAY = "two-way"
+    X = "x"
+
+
 NEVER = "never"
 LONGEST_DELAY = 86_400.0
 
@@ -30,8 +40,35 @@ def run_program(
         bool, typer.Option("--realtime", help="Cycles at their deadlines; default: as fast as it can.")
     ] = False,
     override: Annotated[
-        float, typer.Option("--override", metavar="FACTOR", help="Factor on velocities, 0.01 to 10.")
+        float,
+        typer.Option(
+            "--override", metavar="FACTOR", help="Factor on velocities, 0.01 to 10; two-way: from -10."
+        ),
     ] = 1.0,
+    override_profile: Annotated[
+        Path | None,
+        typer.Option(
+            "--override-profile", metavar="FILE", help="Override over time, CSV of seconds and factor."
+        ),
+    ] = None,
+    interpolator: Annotated[
+        InterpolatorName,
+        typer.Option(
+            "--interpolator", help="two-way runs back at negative overrides; x follows a workpiece."
+        ),
+    ] = InterpolatorName.ONE_WAY,
+    x_velocity: Annotated[
+        float | None, typer.Option("--x-velocity", metavar="MM/S", help="x: the workpiece moves so fast.")
+    ] = None,
+    x_profile: Annotated[
+        Path | None,
+        typer.Option(
+            "--x-profile", metavar="FILE", help="x: the workpiece over time, CSV of seconds and mm."
+        ),
+    ] = None,
+    x_offset: Annotated[
+        float, typer.Option("--x-offset", metavar="MM", help="x: X of the path minus X of the workpiece.")
+    ] = 0.0,
     cycle_us: CycleTime = None,
     m_delay: Annotated[
         str,
@@ -59,6 +96,7 @@ def run_program(
     from nccompile.cli.run_report import finish_run, report_lines
     from nccompile.runtime.task import CyclicTask
     from nccompile.runtime.trace import open_trace
+    from nccompile.runtime.x_task import XTask
     from nccompile.toolchain import machine_digest
 
     keep_apart([path, machine], [trace, report])
@@ -67,9 +105,17 @@ def run_program(
     if job.machine_sha256 != machine_digest(axes):
         print(f"note: {path} was planned for {job.machine}, it runs on {axes.name}", file=sys.stderr)
     axes = _with_cycle(axes, cycle_us)
+    follows = interpolator is InterpolatorName.X
+    if not follows and (x_velocity, x_profile, x_offset) != (None, None, 0.0):
+        raise UsageError("--x-velocity, --x-profile and --x-offset act with --interpolator x only")
+    if follows and (realtime or at or override_profile is not None or override != 1.0):
+        raise UsageError("with --interpolator x the workpiece is the clock: no override, --at or --realtime")
+    how = _options(job, realtime, override, m_delay, at, override_profile, interpolator)
     with open_trace(trace) if trace is not None else nullcontext() as sink:
-        task = CyclicTask(job.chunks(), axes, _options(job, realtime, override, m_delay, at), trace=sink)
-        result = task.run()
+        if follows:
+            result = XTask(job.chunks(), axes, x_velocity, x_profile, x_offset, sink, job.name).run()
+        else:
+            result = CyclicTask(job.chunks(), axes, how, trace=sink).run()
     if report is not None:
         _write_report(report, result.to_json())
     for line in report_lines(result):
@@ -85,20 +131,30 @@ def _with_cycle(machine: Machine, cycle_us: int | None) -> Machine:
     return machine.model_copy(update={"identity": identity})
 
 
-def _options(job: Job, realtime: bool, override: float, m_delay: str, at: list[str] | None) -> Options:
+def _options(
+    job: Job, realtime: bool, override: float, m_delay: str, at: list[str] | None, profile: Path | None,
+    interpolator: InterpolatorName,
+) -> Options:  # fmt: skip
     from nccompile.passes.velocity.settings import LAWS
     from nccompile.runtime.interpolator import OVERRIDE_MAX, OVERRIDE_MIN
+    from nccompile.runtime.profiles import overrides
     from nccompile.runtime.schedule import parse_command
     from nccompile.runtime.task import Options
 
-    if not OVERRIDE_MIN <= override <= OVERRIDE_MAX:
-        raise UsageError(f"--override {override:g}: it goes from {OVERRIDE_MIN:g} to {OVERRIDE_MAX:g}")
+    two_way = interpolator is InterpolatorName.TWO_WAY
+    least = -OVERRIDE_MAX if two_way else OVERRIDE_MIN
+    if not least <= override <= OVERRIDE_MAX:
+        raise UsageError(f"--override {override:g}: it goes from {least:g} to {OVERRIDE_MAX:g}")
+    commands = [parse_command(text, two_way=two_way) for text in at or ()]
+    if profile is not None:
+        commands += overrides(profile, least)
     return Options(
         realtime=realtime,
         override=override,
-        commands=[parse_command(text) for text in at or ()],
+        commands=commands,
         m_delay=_delay(m_delay),
         vel_mode=LAWS[job.time_law],
+        two_way=two_way,
         file=job.name,
     )
 

@@ -40,8 +40,11 @@ class Command:
     value: bool | float | int
 
 
-def parse_command(text: str) -> Command:
-    """The command that a text like "2.5s override=0.5" means.  Raises: UsageError."""
+def parse_command(text: str, *, two_way: bool = False) -> Command:
+    """The command that a text like "2.5s override=0.5" means.
+
+    two_way: overrides may be negative or 0.  Raises: UsageError.
+    """
     match = _SHAPE.fullmatch(text)
     if match is None:
         raise UsageError(
@@ -54,7 +57,9 @@ def parse_command(text: str) -> Command:
     if name == "vel_mode":
         return Command(time, name, int(_choice(text, value, _MODES)))
     if name in _NUMBERS:
-        return Command(time, name, _number(text, value, *_NUMBERS[name]))
+        low, high, unit = _NUMBERS[name]
+        low = -high if two_way and name == "override" else low
+        return Command(time, name, _number(text, value, low, high, unit))
     known = ", ".join((*_FLAGS, "vel_mode", *_NUMBERS))
     raise UsageError(f'"{name}" in "{text}" is not an input of the interpolator; the inputs are {known}')
 
