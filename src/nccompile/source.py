@@ -21,7 +21,7 @@ from typing import BinaryIO
 
 from nccompile.errors import UsageError
 
-__all__ = ["MOST_LINE", "NOWHERE", "STREAMED", "LargeSource", "Source", "Span"]
+__all__ = ["MOST_LINE", "NOWHERE", "STREAMED", "LargeSource", "Source", "Span", "shown_path"]
 
 STREAMED = 400_000
 """Bytes above which a program is not held in memory: some ten thousand lines."""
@@ -30,6 +30,11 @@ MOST_LINE = 1 << 26
 """Bytes in a line above which a file is refused at once."""
 
 _PART = 1 << 20
+
+
+def shown_path(path: Path) -> str:
+    """A path as text that can be written anywhere: bytes in it that are no UTF-8 become U+FFFD."""
+    return str(path).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -71,9 +76,9 @@ class Source:
         """Reads a file, a large one when its parts are asked for; raises OSError."""
         file = path.open("rb")
         if path.is_file() and os.fstat(file.fileno()).st_size > STREAMED:
-            return LargeSource(str(path), file)
+            return LargeSource(shown_path(path), file)
         with file:
-            return cls.from_stream(str(path), file)
+            return cls.from_stream(shown_path(path), file)
 
     @classmethod
     def from_stream(cls, name: str, stream: BinaryIO) -> Source:

@@ -76,6 +76,19 @@ def test_a_closed_or_full_standard_output(tmp_path: Path, arguments: str, stdout
     assert "Traceback" not in done.stderr
 
 
+def test_text_that_the_output_cannot_say(tmp_path: Path) -> None:
+    (tmp_path / "größe.nc").write_text("% größe\nN10 G1 X1 F20 (€)\n", encoding="utf-8")
+    done = subprocess.run(
+        [*NCCOMPILE, "lint", "größe.nc"],
+        cwd=tmp_path,
+        capture_output=True,
+        check=False,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+    )
+    assert done.returncode == 0
+    assert b"gr\\xf6\\xdfe.nc:2:16" in done.stdout
+
+
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_an_interrupt_leaves_no_file(tmp_path: Path, number: signal.Signals, code: int) -> None:
     program = _long_program(tmp_path / "p.nc", 150_000)

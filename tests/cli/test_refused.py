@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 from pathlib import Path
 
@@ -218,6 +219,24 @@ def test_outputs_are_neither_inputs_nor_each_other(
     result = command(arguments[0], program, *arguments[1:])
     _assert_refused(result, 2, tmp_path, {"part.nc", "m.toml", "link.nc"})
     assert program.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["compile", "--report", "r.json"],
+        ["lint", "--format", "json"],
+        ["lint", "--format", "sarif"],
+        ["plot", "-o", "p.png"],
+        ["fmt", "--check"],
+    ],
+)
+def test_names_that_are_no_text(command: Command, tmp_path: Path, arguments: list[str]) -> None:
+    path = tmp_path / os.fsdecode(b"b\xff.nc")
+    path.write_text("% p\nN10 G1 X1 F20\n")
+    result = command(arguments[0], path, *arguments[1:])
+    assert (result.code, "internal error" in result.err) == (0, False)
+    assert command("lint", path, "--format", "github").code == 0
 
 
 @pytest.mark.parametrize("name", ["sample", "plot"])

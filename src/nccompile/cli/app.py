@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import sys
@@ -127,6 +128,7 @@ def _options(
 def run(arguments: Sequence[str]) -> int:
     """Runs one command line and returns its exit code; nothing but Python's own start can raise."""
     _open_closed_streams()
+    _write_any_text()
     _exit_on_terminate()
     try:
         app(args=list(arguments), prog_name="nccompile")
@@ -150,6 +152,14 @@ def _open_closed_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))  # noqa: SIM115 - open till the end
+
+
+def _write_any_text() -> None:
+    """Files and pipes get UTF-8; what a terminal, or the name of a file, cannot say is written as an escape."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            fixed = stream.isatty() or "PYTHONIOENCODING" in os.environ
+            stream.reconfigure(encoding=None if fixed else "utf-8", errors="backslashreplace")
 
 
 def _close_stdout(code: int) -> int:

@@ -102,10 +102,11 @@ def _summary(meta: Meta, compilation: Compilation, place: Path) -> str:
 def _write_report(path: Path, compilation: Compilation, meta: Meta | None, place: Path) -> None:
     from nccompile.backend.files import replacing
     from nccompile.diagnostics import to_json
+    from nccompile.source import shown_path
 
     content = {
         "program": compilation.source.name,
-        "output": None if meta is None else str(place),
+        "output": None if meta is None else shown_path(place),
         "errors": compilation.diagnostics.errors,
         "diagnostics": json.loads(to_json(compilation.diagnostics)),
         "counts": dict(sorted(compilation.diagnostics.counts.items())),

@@ -15,7 +15,7 @@ from nccompile.cli.queues import STDIN, is_queue, read_queue, refuse_device, req
 from nccompile.cli.report import report
 from nccompile.errors import UsageError
 from nccompile.machine.model import Machine, default_machine, load
-from nccompile.source import Source
+from nccompile.source import Source, shown_path
 from nccompile.toolchain import Compilation
 from nccompile.toolpath import Toolpath
 
@@ -78,7 +78,7 @@ def open_job(path: Path, machine: Machine, options: ProgramOptions, form: Report
             raise UsageError(f"{path} is an OutQueue: {', '.join(options.given)} acts on programs only")
         queue = read_queue(path)
         totals, origin = queue.total, queue.meta.provenance
-        return _job(str(path), queue.axes, queue.chunks, totals.job_time, totals.segments, origin)
+        return _job(shown_path(path), queue.axes, queue.chunks, totals.job_time, totals.segments, origin)
     compilation, held = compiled(path, machine, options, form, Compilation.planned)
     axes = held[0].axes if held else ("X", "Y", "Z")
     segments = sum(len(chunk) for chunk in held)

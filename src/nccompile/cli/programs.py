@@ -8,6 +8,7 @@ from pathlib import Path
 
 from nccompile.cli.queues import STDIN, require_program
 from nccompile.errors import UsageError
+from nccompile.source import shown_path
 
 __all__ = ["name_of", "programs_in", "read_bytes", "require_file", "store"]
 
@@ -31,7 +32,7 @@ def programs_in(files: list[Path]) -> list[Path]:
 
 def name_of(path: Path) -> str:
     """What a program is called in findings."""
-    return "<stdin>" if path == STDIN else str(path)
+    return "<stdin>" if path == STDIN else shown_path(path)
 
 
 def read_bytes(path: Path) -> bytes:
