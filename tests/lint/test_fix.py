@@ -64,6 +64,7 @@ def fixed(text: str) -> str:
         ("% a\nN10 G1 X1 Y2 F20\nN20 G1X2Y2\nN30 G1 X3 Y2", "% a\nN10 G1 X1 Y2 F20\nN20 G1 X2\nN30 G1 X3"),
         ("(cut)\r\nN10 G1 X1 F20", "% a\r\n(cut)\r\nN10 G1 X1 F20"),
         ("% a\nN10 GNone X1 R2 F20", "% a\nN10 X1 F20"),
+        ("I1 J1", "% a\nN10"),
         ("% a\nN10 G1 X1 F20\nG1 X2", "% a\nN10 G1 X1 F20\nN20 G1 X2"),
         ("G1 X1 F20\n/G1 X2\n", "% a\nN10 G1 X1 F20\n/N20 G1 X2\n"),
         (

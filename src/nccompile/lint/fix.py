@@ -50,6 +50,7 @@ def apply_fixes(source: Source, options: Options, config: Config, limit: int | N
             added = sum(edit.text.count("\n") for fix in chosen for edit in fix.edits)
             if _keeps(report, after, added):
                 source, report, count = changed, after, count + len(chosen)
+                refused.clear()  # what was not possible may be now
                 break
             refused.add(code)
     return Fixed(source.text, count, lint(source, options, config, limit=limit))
