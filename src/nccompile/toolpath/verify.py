@@ -356,6 +356,6 @@ def _check_third_order(chunk: Toolpath, start: Floats, known: Flags) -> None:
     off = np.abs(start + 0.5 * (a0 + a1) * time - v)
     _forbid(chunk, known & (off > _LAW_RATIO * np.maximum(v, start)), "v_end is not where the jerk leads to")
     least = np.divide(
-        _PLACE, np.maximum(v, start), out=np.full_like(v, np.inf), where=np.maximum(v, start) > 0.0
+        _PLACE, np.maximum(v, start), out=np.where(known, np.inf, 0.0), where=np.maximum(v, start) > 0.0
     )
     _forbid(chunk, known & (np.abs(a1 - a0) > jerk * (time * room + least)), "a jerk beyond the limit")
