@@ -19,9 +19,8 @@ Kinds = npt.NDArray[np.uint8]
 _SET_POSITION = 5
 _SPACE = 3
 
-_ALONG = 0.35  # on curves: share of an axis's jerk for changing the path acceleration,
-_BEND = 0.5  # for turning with the curve at a constant velocity,
-_ACROSS = 0.525  # for turning while the velocity changes: (0.35 + 0.5)² + 0.525² < 1
+_BEND = 0.5  # on curves: greatest share of an axis's jerk for following the curve,
+_ALONG = 0.35  # least share for changing the path acceleration
 
 
 @kernel
@@ -32,8 +31,12 @@ def jerk_limits(
     """Writes the path jerk of every row; lowers v_limit, accel and decel to what it leaves.
 
     On a straight row an axis has the jerk q' j.  With v, a, j along the path and curvature c the jerk of a curve is
-    j - c² v³ along it and 3 c v a across it; both are at right angles.  The change of the curvature along ellipses
-    and splines is not counted.
+    j - c² v³ along it and 3 c v a across it, at right angles.  At constant velocity c² v³ is all there is and gets
+    most of the axis's jerk J; a then has what leaves j its least share, and j the rest:
+
+        (|j| + c² v³)² + (3 c v a)² <= J²
+
+    The change of the curvature along ellipses and splines is not counted.
     """
     axes = target.shape[1]
     for i in range(len(kind)):
@@ -61,13 +64,16 @@ def jerk_limits(
                 least = min(least, float(j_axis[third]))
             bend = max_curvature(int(kind[i]), parameters[row])
             if least < inf:
-                most = min(most, _ALONG * least if bend > 0.0 else least)
                 if 0.0 < bend < inf:
                     v = min(float(v_limit[i]), exp(log(_BEND * least / (bend * bend)) / 3.0))
                     v_limit[i] = v
-                    ramp = _ACROSS * least / (3.0 * bend * v)
+                    turn = bend * bend * v * v * v / least
+                    ramp = sqrt(1.0 - (turn + _ALONG) * (turn + _ALONG)) * least / (3.0 * bend * v)
                     accel[i] = min(accel[i], ramp)
                     decel[i] = min(decel[i], ramp)
+                    across = 3.0 * bend * v * max(accel[i], decel[i]) / least
+                    least *= sqrt(1.0 - across * across) - turn
+                most = min(most, least)
         jerk[i] = most
 
 
