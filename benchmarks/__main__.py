@@ -5,7 +5,19 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 
-NAMES = ("startup", "compile", "front_end", "queue", "runtime", "planner", "lint", "passes", "dxf", "toppra")
+NAMES = (
+    "startup",
+    "compile",
+    "front_end",
+    "queue",
+    "runtime",
+    "planner",
+    "lint",
+    "lsp",
+    "passes",
+    "dxf",
+    "toppra",
+)
 
 
 def main() -> int:

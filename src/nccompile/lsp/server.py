@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
 import sys
 from collections.abc import Callable, Generator
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
 from lsprotocol import types
@@ -21,6 +19,7 @@ from nccompile.lsp.colours import Colours
 from nccompile.lsp.document import Document
 from nccompile.lsp.features.actions import resolved
 from nccompile.lsp.session import Outdated, Session
+from nccompile.lsp.threads import Worker
 from nccompile.version import VERSION
 
 __all__ = ["CHECKED", "NcServer", "ServerProtocol"]
@@ -71,7 +70,7 @@ class NcServer(LanguageServer):
         super().__init__("nccompile", VERSION, protocol_cls=ServerProtocol)
         self.session = Session(self._publish, self._say, self._checked)
         self.colours = Colours()
-        self._readers = ThreadPoolExecutor(1, thread_name_prefix="reader")
+        self._reader = Worker("reader")
         sys.setswitchinterval(_SWITCH_INTERVAL)
 
     @property
@@ -94,7 +93,7 @@ class NcServer(LanguageServer):
         """
         document = self.document(uri)
         copy = document.copy()
-        answer = await asyncio.get_running_loop().run_in_executor(self._readers, compute, copy)
+        answer = await self._reader.run(compute, copy)
         if now and (self.document(uri) is not document or document.version != copy.version):
             raise JsonRpcContentModified("the document was edited meanwhile")
         return answer
@@ -111,7 +110,7 @@ class NcServer(LanguageServer):
     def shut_down(self) -> None:
         """Gives up what is under way."""
         self.session.shut_down()
-        self._readers.shutdown(wait=False, cancel_futures=True)
+        self._reader.shut_down()
 
     def refused(self, error: Exception) -> JsonRpcException:
         """An answer that says why something cannot be done."""
@@ -153,9 +152,8 @@ class NcServer(LanguageServer):
         """The edit of a chosen action."""
         uri = action.data.get("uri", "") if isinstance(action.data, dict) else ""
         document, analysis = await self.analysis(uri)
-        loop = asyncio.get_running_loop()
         try:
-            done = await loop.run_in_executor(None, resolved, document, analysis, action)
+            done = await self._reader.run(resolved, document, analysis, action)
         except NccompileError as error:
             raise self.refused(error) from None
         if document.version != analysis.version:

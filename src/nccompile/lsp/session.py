@@ -14,13 +14,13 @@ import gc
 import logging
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 
 from nccompile.errors import NccompileError
 from nccompile.lint.config import Config, config_for
 from nccompile.lint.program import Cancelled
 from nccompile.lsp.analysis import Analysis, Settings, Times, analyse, timed
 from nccompile.lsp.document import Document, Snapshot
+from nccompile.lsp.threads import Worker
 from nccompile.lsp.warming import Warming
 from nccompile.machine.model import default_machine, load
 
@@ -39,30 +39,42 @@ class Outdated(Exception):
     """The document changed while something was computed for it."""
 
 
+class Wish:
+    """Whether a version is still wanted.  Programs keep it, so it knows nothing of what holds them."""
+
+    def __init__(self) -> None:
+        self.lives = True
+
+    def __call__(self) -> bool:
+        """Asked from the thread that does the work."""
+        return self.lives
+
+
 class Work:
     """The analysis of one version of a document, under way or done."""
 
     def __init__(self, document: Document, loop: asyncio.AbstractEventLoop) -> None:
         self.document = document
         self.version = document.version
-        self.wanted = True
+        self.wish = Wish()
         self.checked: asyncio.Future[Analysis] = loop.create_future()
         self.timed: asyncio.Future[Analysis] = loop.create_future()
         self.task: asyncio.Task[None] | None = None
 
-    def is_wanted(self) -> bool:
-        """Whether the version is still the newest; asked from the thread that does the work."""
-        return self.wanted
+    @property
+    def wanted(self) -> bool:
+        """Whether the version is still the newest."""
+        return self.wish.lives
 
     def drop(self) -> None:
         """The version is not wanted any more."""
-        self.wanted = False
+        self.wish.lives = False
         for future in (self.checked, self.timed):
             future.cancel()
 
 
 def _analysed(snapshot: Snapshot, work: Work, settings: Settings) -> Analysis:
-    return analyse(snapshot.source(), work.version, settings, work.is_wanted)
+    return analyse(snapshot.source(), work.version, settings, work.wish)
 
 
 class Session:
@@ -77,8 +89,8 @@ class Session:
         self.documents: dict[str, Document] = {}
         self._publish, self._say, self._done = publish, say, done
         self._works: dict[str, Work] = {}
-        self._checks = ThreadPoolExecutor(1, thread_name_prefix="check")
-        self._timings = ThreadPoolExecutor(1, thread_name_prefix="timing")
+        self._checks = Worker("check")
+        self._timings = Worker("timing")
         self._warming = Warming()
         self._said: set[str] = set()
         self._idle: asyncio.TimerHandle | None = None
@@ -121,8 +133,8 @@ class Session:
         """Gives up what is under way."""
         for work in self._works.values():
             work.drop()
-        for pool in (self._checks, self._timings):
-            pool.shutdown(wait=False, cancel_futures=True)
+        self._checks.shut_down()
+        self._timings.shut_down()
         self._warming.stop()
 
     async def analysis(self, uri: str, *, with_times: bool = False) -> tuple[Document, Analysis]:
@@ -150,7 +162,7 @@ class Session:
         begun = time.perf_counter()
         snapshot, settings = document.snapshot(), self._settings(document)
         try:
-            analysis = await loop.run_in_executor(self._checks, _analysed, snapshot, work, settings)
+            analysis = await self._checks.run(_analysed, snapshot, work, settings)
             if not work.wanted:
                 return
             document.analysis = analysis
@@ -163,7 +175,7 @@ class Session:
             await asyncio.sleep(pause)  # times are for those who read, not for those who type
             if not work.wanted:
                 return
-            times: Times | None = await loop.run_in_executor(self._timings, timed, analysis, work.is_wanted)
+            times: Times | None = await self._timings.run(timed, analysis, work.wish)
             analysis.times = times
             if work.wanted:
                 work.timed.set_result(analysis)
