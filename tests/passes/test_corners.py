@@ -193,7 +193,9 @@ def test_rounded_joints_are_continuous_in_direction(path: Toolpath, radius: floa
     flat = np.ptp(out.target[:, 2]) == 0.0 and path.start[2] == path.target[0, 2]
     if flat:
         assert out.kind[1] == Kind.ARC
-        assert out.curves.parameters[out.curve[1], 2] <= radius * (1 + digits)
+        row = out.curves.parameters[out.curve[1]]
+        assert row[2] <= radius * (1 + digits)
+        assert np.linalg.norm(row[:2] - path.target[0, :2]) - row[2] <= radius * (1 + digits)
 
 
 def test_positionings_stops_and_small_bends_stay() -> None:

@@ -32,10 +32,12 @@ _CORNER, _LEFT = 1, 2
 _SPACE = 3
 
 _STEPS = 30  # of Newton's method, which needs about five
-_REACHED = 1e-12  # of the largest coordinate
+_REACHED = 1e-12  # [mm] and of the radius: both ways to the centre lead to one point
+_DIGITS = 2e-15  # of the coordinates, which have no more
 _TRIES = 40  # of the search for the greatest arc that fits
 _ENOUGH = 24
 _SPLIT = 1e-3  # relative: the radius found is at most this much too small
+_JUST = 1.0 + 1e-9
 _FLAT = 1e-12  # determinant of Newton's matrix below which both segments are parallel
 
 _QUARTER_MISS = (
@@ -168,7 +170,7 @@ def round_corners(
             ok = _greatest(
                 ka, pa, rows[i], points[i], points[j], la, na, float(room[i]),
                 kb, pb, rows[j], points[j + 1], lb, nb, float(room[j]),
-                nodes, plane, reach / half, one, two, cuts, piece_rows[count],
+                nodes, plane, reach / half, r, one, two, cuts, piece_rows[count],
             )  # fmt: skip
             if not ok:
                 continue
@@ -229,9 +231,9 @@ def round_corners(
 def _greatest(
     ka: int, pa: int, row_a: Floats, a: Floats, v: Floats, la: float, na: int, room_a: float,
     kb: int, pb: int, row_b: Floats, b: Floats, lb: float, nb: int, room_b: float,
-    nodes: Floats, plane: int, radius: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
+    nodes: Floats, plane: int, radius: float, most: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
 ) -> bool:  # fmt: skip
-    """The arc of the greatest radius up to `radius` that touches both segments a-v and v-b within their room.
+    """The greatest arc up to `radius` that touches both segments a-v and v-b within their room, at most `most` from v.
 
     Fills cuts[0..1], what it cuts off them, and its row; False if no arc down to a trifle was found.
     """
@@ -241,7 +243,7 @@ def _greatest(
     trial = radius
     for tries in range(_TRIES):
         if _touch(
-            ka, pa, row_a, a, v, la, na, room_a, kb, pb, row_b, b, lb, nb, room_b, nodes, plane, trial, one, two,
+            ka, pa, row_a, a, v, la, na, room_a, kb, pb, row_b, b, lb, nb, room_b, nodes, plane, trial, most, one, two,
             cuts, out,
         ):  # fmt: skip
             good = True
@@ -264,9 +266,9 @@ def _greatest(
 def _touch(
     ka: int, pa: int, row_a: Floats, a: Floats, v: Floats, la: float, na: int, room_a: float,
     kb: int, pb: int, row_b: Floats, b: Floats, lb: float, nb: int, room_b: float,
-    nodes: Floats, plane: int, radius: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
+    nodes: Floats, plane: int, radius: float, most: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
 ) -> bool:  # fmt: skip
-    """The arc of this radius: fills cuts[2..3] and its row, False if Newton does not find it within the room."""
+    """The arc of this radius: fills cuts[2..3] and its row, False if Newton does not find one that is allowed."""
     x = _u_of(plane)
     y = _v_of(plane)
     leg_at(ka, pa, row_a, a, v, la, nodes[0], nodes[1], na, la, one)
@@ -286,14 +288,15 @@ def _touch(
         by = side * float(two[3 + x])
         mx = one[x] + radius * ax - two[x] - radius * bx
         my = one[y] + radius * ay - two[y] - radius * by
-        if max(abs(mx), abs(my)) <= _REACHED * (1.0 + radius + max(abs(one[x]), abs(one[y]))):
+        if max(abs(mx), abs(my)) <= _REACHED * (1.0 + radius) + _DIGITS * max(abs(one[x]), abs(one[y])):
             if not (la - room_a <= sa < la and 0.0 < sb <= room_b):
                 return False
             cx = 0.5 * (one[x] + radius * ax + two[x] + radius * bx)
             cy = 0.5 * (one[y] + radius * ay + two[y] + radius * by)
             row = np.empty(12)
             _arc_row(one, two, plane, cx, cy, side > 0.0, row)
-            if abs(row[4]) >= pi:
+            missed = sqrt((row[0] - v[x]) * (row[0] - v[x]) + (row[1] - v[y]) * (row[1] - v[y])) - row[2]
+            if abs(row[4]) >= pi or missed > most * _JUST:
                 return False
             out[:] = row
             cuts[2] = la - sa
