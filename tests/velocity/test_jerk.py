@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
@@ -227,6 +228,26 @@ def test_it_is_never_faster_than_look_ahead_and_never_slower_with_a_larger_windo
     for small, large in pairwise(times):
         assert large <= small * (1 + 1e-9)
     assert times[-1] >= seconds(path, replace(OPTIONS, planner=LOOK_AHEAD)) * (1 - 1e-9)
+
+
+def test_a_block_that_cannot_be_run_on_from_ends_where_the_one_before_ended(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    build = Builder()
+    for _ in range(12):
+        build.line(3.0, 0.01, 100, 2000, 2000)
+    through, calls = jerk.profile, []
+
+    def refusing(*args: Any) -> tuple[Ints, Floats, int] | None:
+        calls.append(len(args[0]))
+        return None if len(calls) == 2 else through(*args)
+
+    monkeypatch.setattr(jerk, "_BLOCK", 6)
+    monkeypatch.setattr(jerk, "profile", refusing)
+    whole = planned(build.path())
+    verify(whole)
+    assert whole.v_end is not None
+    assert np.unique(whole.line[whole.v_end == 0.0]).tolist() == [6, 12]
 
 
 def test_a_corner_is_passed_at_its_velocity() -> None:
