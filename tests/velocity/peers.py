@@ -6,6 +6,7 @@ planner under test.  Units: mm, s.
 klipper   docs/Kinematics.md: trapezoids with one acceleration, corners by the centripetal model, moves taken as
           chords of a circle
 grbl      the same corner model with the deviation as a setting, accelerations per axis along each line
+least     a lower bound for axes that keep acceleration and tolerance, whatever the rule
 linuxcnc  arcs that blend corners inside a path tolerance, half of the shorter move at most, 200 moves ahead
 """
 
@@ -123,6 +124,29 @@ def linuxcnc(moves: Moves, accel: float, tolerance: float, ahead: int = 200) -> 
     reach = np.concatenate([[0.0], np.cumsum(2 * along * length)])
     last = np.minimum(np.arange(len(corner)) + 1 + ahead, len(length))
     return trapezoids(moves, along, np.minimum(corner, reach[last] - reach[1:-1]))
+
+
+def least(moves: Moves, accel: float, tolerance: float) -> float:
+    """What no motion can beat that stays within `tolerance` of the path and inside `accel` on every axis.
+
+    Where an axis stands on the next move, or turns back, it comes to rest between the places `tolerance` before and
+    behind the corner, so it enters with at most sqrt(2 a 2 d); leaving likewise.  The greater of both counts for
+    both sides, all other bends are free, and the 2 d at the corner take no time.  Rules for corners can come out a
+    little below it: they let the blend at a corner add to the braking before it.
+    """
+    t = moves.direction
+    before, after = np.abs(t[:-1]), np.abs(t[1:])
+    turns = t[:-1] * t[1:] < 0.0
+    enter = np.where((before > 1e-9) & ((after <= 1e-9) | turns), before, 0.0).max(axis=1)
+    leave = np.where((after > 1e-9) & ((before <= 1e-9) | turns), after, 0.0).max(axis=1)
+    long = np.minimum(moves.length[1:], moves.length[:-1]) > 4.0 * tolerance
+    bound = (enter > 0.0) & (leave > 0.0) & long
+    with np.errstate(divide="ignore"):
+        corner = np.where(bound, 4.0 * accel * tolerance / np.minimum(enter, leave) ** 2, inf)
+    slower = np.minimum(moves.feed[1:], moves.feed[:-1])
+    bound &= corner < slower**2
+    time = trapezoids(moves, accel / np.abs(t).max(axis=1), corner)
+    return time - float((2.0 * tolerance / slower[bound]).sum())
 
 
 def finishing(passes: int = 3, seed: int = 1) -> Moves:

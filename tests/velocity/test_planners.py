@@ -15,7 +15,7 @@ from nccompile.machine.limits import AxisLimits
 from nccompile.machine.model import default_machine
 from nccompile.passes.velocity import SOFTMOTION, Planner, PlanSettings, plan, row_times
 from nccompile.toolpath.columns import Toolpath
-from tests.velocity.peers import Moves, finishing, grbl, klipper, linuxcnc
+from tests.velocity.peers import Moves, finishing, grbl, klipper, least, linuxcnc
 from tests.velocity.random_paths import Builder, cut, paths
 
 AXES = ("X", "Y", "Z", "A")
@@ -61,6 +61,7 @@ def test_our_corner_rule_loses_less_time_than_every_peers() -> None:
     ours = job_time(path, equal_limits(path, per_axis=True)) - moves.time_at_feed
     peers = (klipper(moves, ACCEL, 5.0), grbl(moves, ACCEL, 0.01), linuxcnc(moves, ACCEL, 0.005))
     assert 0.0 < ours < min(peers) - moves.time_at_feed
+    assert ours < 1.1 * (least(moves, ACCEL, 0.01) - moves.time_at_feed)
 
 
 def test_a_parabola_through_a_square_corner() -> None:
