@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
-from nccompile.kernels.interpolator_enter import enter, may_leave, rest_at
+from nccompile.kernels.interpolator_enter import enter, may_leave, rest_at, shift
 from nccompile.kernels.interpolator_law import arrive, begin, command, fire, phase
 from nccompile.kernels.interpolator_place import direction, locate
 from nccompile.kernels.interpolator_rate import FITS, OPEN
@@ -43,7 +43,7 @@ __all__ = [
     "ABORT", "AT_M", "CONTINUES", "EMERGENCY", "EVENT", "FINISHED", "GO", "IPO_FINISHED", "JUMPED", "LAST_SWITCH",
     "LINE_NO", "LOG_FULL", "MODE", "M_ROW", "NEED_DATA", "NODES", "OVERRIDE", "PLANNED", "QUICK", "RAN", "ROW",
     "RUNNING", "SLOW", "STARTED", "STARVED", "STATUS", "STOPPED", "SWITCHES", "TABLE", "TABLE_ROW", "Floats", "Inputs",
-    "Rows", "S", "State", "V", "advance", "direction", "limit_ends", "locate", "rest_at", "state_f", "state_i",
+    "Rows", "S", "State", "V", "advance", "direction", "limit_ends", "locate", "rest_at", "shift", "state_f", "state_i",
 ]  # fmt: skip
 
 
@@ -53,19 +53,18 @@ def advance(
     f: Floats, i: State, nodes_u: Floats, nodes_s: Floats, here: Floats, out: Floats, velocity: Floats,
     line: npt.NDArray[np.int32], status: npt.NDArray[np.uint8], switches: npt.NDArray[np.uint32],
     log: npt.NDArray[np.int64],
-) -> tuple[int, int, int]:  # fmt: skip
-    """Runs up to n cycles; returns (cycles run, reason, rows in the switch log).
+) -> tuple[int, int, int, int]:  # fmt: skip
+    """Runs up to n cycles; returns (cycles run, reason, rows in the switch log, rows that are done).
 
     rows head..tail-1 are at hand, of which the first `settled` have final end velocities (`limit_ends`);
     complete 1: no more will come.  `here` (k,) is the present set position, changed in place.  Per cycle j:
     out[j] set position, velocity[j] path length covered over the cycle time, line[j] source line, status[j],
-    switches[j] bit b for switch b + 1.  The caller drops rows before i[ROW] after the call.
+    switches[j] bit b for switch b + 1.  The caller drops the rows that are done.
     """
     axes = out.shape[1]
     reason = RAN
     logged = 0
-    if i[STARTED] == 0:
-        i[ROW] = head
+    shift(rows, head, i, 1)
     done = 0
     logged_before = 0
     patient = inputs.patient == 1 and complete == 0
@@ -359,4 +358,6 @@ def advance(
         status[done] = i[STATUS]
         switches[done] = i[SWITCHES]
         done += 1
-    return done, reason, logged
+    gone = i[ROW] - head
+    shift(rows, i[ROW], i, -1)
+    return done, reason, logged, gone

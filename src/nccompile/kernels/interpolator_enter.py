@@ -13,7 +13,24 @@ from nccompile.kernels.interpolator_rows import (
 )  # fmt: skip
 from nccompile.kernels.interpolator_third import begin_planned, leave
 
-__all__ = ["enter", "may_leave", "rest_at"]
+__all__ = ["enter", "may_leave", "rest_at", "shift"]
+
+
+@kernel
+def shift(rows: Rows, head: int, i: State, sign: int) -> None:
+    """Turns distances from the head into places in `rows` (sign 1), or back (-1).
+
+    Between calls the state holds distances, because a ring buffer moves its rows.
+    """
+    i[ROW] += sign * head
+    if i[M_ROW] >= 0:
+        i[M_ROW] += sign * head
+    if sign > 0 and i[TABLE_ROW] >= 0:
+        i[TABLE_ROW] += head
+    elif sign < 0:
+        i[TABLE_ROW] = i[TABLE_ROW] - head if i[TABLE_ROW] >= head else -1
+    if i[RUNNING] == 1:
+        i[EVENT] += sign * rows.event_begin[head]
 
 
 @kernel

@@ -90,34 +90,18 @@ class Stepper:
             self._version = version
             self._settled = k.limit_ends(rows, head, tail, int(complete), float(self.f[k.OVERRIDE]))
         override = self.f[k.OVERRIDE]
-        self._shift(rows, head, 1)
-        done, reason, logged = k.advance(
+        done, reason, logged, dropped = k.advance(
             rows, head, tail, self._settled, int(complete), inputs, min(n, BURST), self.f, i,
             self._nodes_u, self._nodes_s, self.here, self._position, self._velocity, self._line, self._status,
             self._switches, self._log,
         )  # fmt: skip
-        dropped = int(i[k.ROW]) - head
-        self._shift(rows, head + dropped, -1)
         self._settled = max(0, self._settled - dropped)
         if self.f[k.OVERRIDE] != override:
             self._version = -1
         return Burst(
             self._position[:done], self._velocity[:done], self._line[:done], self._status[:done],
-            self._switches[:done], self._log[:logged], int(reason), dropped,
+            self._switches[:done], self._log[:logged], reason, dropped,
         )  # fmt: skip
-
-    def _shift(self, rows: k.Rows, head: int, sign: int) -> None:
-        """Turns distances from the head into places in `rows` (sign 1), or back (-1)."""
-        i = self.i
-        i[k.ROW] += sign * head
-        for slot in (k.M_ROW, k.TABLE_ROW):
-            if sign > 0 and i[slot] >= 0:
-                i[slot] += head
-            elif sign < 0:
-                i[slot] = i[slot] - head if i[slot] >= head else -1
-        if i[k.RUNNING] == 1:
-            first = int(rows.event_begin[head])
-            i[k.EVENT] += sign * first
 
     def place(self, rows: k.Rows, row: int, s: float, inputs: k.Inputs) -> None:
         """Puts the path at rest at path length `s` of a row of a whole path; the next `run` starts there.
@@ -128,7 +112,7 @@ class Stepper:
         k.limit_ends(rows, row, len(rows.kind), 1, float(f[k.OVERRIDE]))
         k.rest_at(rows, row, s, inputs, f, i, self._nodes_u, self._nodes_s)
         self._version = -1
-        self._shift(rows, row, -1)
+        k.shift(rows, row, i, -1)
 
     def tangent(self, rows: k.Rows, head: int) -> tuple[float, float, float]:
         """Direction of the path in X, Y, Z at the present set position; zeros at rest (vecActTangent)."""

@@ -113,7 +113,6 @@ class Outputs:
     working: bool = False
     source_line: int = -1
     velocity: float = 0.0
-    tangent: tuple[float, float, float] = (0.0, 0.0, 0.0)
     last_switch: int = 0
     switches: int = 0
     way_pos: float = 0.0
@@ -122,6 +121,15 @@ class Outputs:
     m_l: float = 0.0
     m_o: str = ""
     underrun: bool = False
+    _place: tuple[Stepper, k.Rows, int] | None = None
+
+    @property
+    def tangent(self) -> tuple[float, float, float]:
+        """See the class; found when it is asked for, between two calls."""
+        if self._place is None or not self.working:
+            return 0.0, 0.0, 0.0
+        stepper, rows, head = self._place
+        return stepper.tangent(rows, head)
 
 
 def describe(
@@ -138,7 +146,7 @@ def describe(
     out.working = Status.ACCEL <= out.status <= Status.WAIT and not out.done
     out.source_line = int(i[k.LINE_NO]) if out.working else -1
     out.last_switch, out.switches = int(i[k.LAST_SWITCH]), int(i[k.SWITCHES])
-    out.tangent = stepper.tangent(rows, head) if out.working else (0.0, 0.0, 0.0)
+    out._place = stepper, rows, head
 
 
 @dataclass(frozen=True)
