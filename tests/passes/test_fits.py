@@ -9,8 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.interpolate import BSpline
 from scipy.spatial import cKDTree
 
+from nccompile import kernels
+from nccompile.kernels.spline_basis import pad_knots, span_basis, span_powers
+from nccompile.kernels.spline_errors import chord_errors
+from nccompile.passes import runs
 from nccompile.passes.base import Pass
 from nccompile.passes.fit_arcs import FitArcs
 from nccompile.passes.fit_splines import FitSplines
@@ -116,21 +121,143 @@ def test_sharp_corners_stay_exact(p: Pass) -> None:
     assert min(np.abs(out.target[:, :2] - corner).sum(axis=1)) == 0.0
 
 
-def test_splines_are_smooth_to_the_second_derivative() -> None:
-    out, _ = run(FitSplines(), polyline(curve(800)))
-    assert len(out) > 10
-    p = out.curves.parameters.reshape(-1, 3, 4)
-    end = p.sum(axis=2)
-    assert np.abs(end[:-1] - p[1:, :, 0]).max() < 1e-9
+def cubics(path: Toolpath) -> np.ndarray[tuple[int, int, int], np.dtype[np.float64]]:
+    """Powers of the cubics of a path: Shape (m, 3, 4)."""
+    return path.curves.parameters[path.curve[path.curve >= 0]].reshape(-1, 3, 4)
+
+
+def kinks(path: Toolpath) -> tuple[float, float]:
+    """The greatest change of direction [rad] and of curvature [1/mm] at the joints of a path of cubics."""
+    p = cubics(path)
+    assert np.abs(p.sum(axis=2)[:-1] - p[1:, :, 0]).max() < 1e-9
     first, last = p[:, :, 1], p[:, :, 1] + 2 * p[:, :, 2] + 3 * p[:, :, 3]
     unit = [v / np.linalg.norm(v, axis=1, keepdims=True) for v in (first, last)]
-    assert np.abs(unit[1][:-1] - unit[0][1:]).max() < 1e-7
-    # Curvature is the same on both sides of every joint.
     bend = [
-        np.cross(v, w)[:, 2] / np.linalg.norm(v, axis=1) ** 3
+        np.cross(v, w) / np.linalg.norm(v, axis=1, keepdims=True) ** 3
         for v, w in ((first, 2 * p[:, :, 2]), (last, 2 * p[:, :, 2] + 6 * p[:, :, 3]))
     ]
-    assert np.abs(bend[1][:-1] - bend[0][1:]).max() < 1e-6
+    return float(np.abs(unit[1][:-1] - unit[0][1:]).max()), float(np.abs(bend[1][:-1] - bend[0][1:]).max())
+
+
+@pytest.mark.parametrize("z", [0.0, 2.0])
+def test_splines_are_smooth_to_the_second_derivative(z: float) -> None:
+    out, _ = run(FitSplines(), polyline(curve(800, z=z)))
+    assert len(out) > 10
+    turn, bend = kinks(out)
+    assert turn < 1e-7
+    assert bend < 1e-6
+
+
+def test_splines_are_smooth_across_changes_of_feed_and_cuts(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runs, "LONGEST", 200)
+    sketch = Sketch()
+    points = curve(900)
+    sketch.at[:2] = sketch.start[:2] = points[0][:2]
+    for i, (x, y, _) in enumerate(points[1:]):
+        sketch.to(x, y, feed=50.0 if i < 333 else 40.0)
+    path = sketch.path()
+    out, report = run(FitSplines(), path)
+    assert (report.deviation or 0.0) <= 0.005
+    turn, bend = kinks(out)
+    assert turn < 1e-7
+    assert bend < 1e-6
+    for vertex in (200, 333, 533, 733):  # every 200 segments from the corner or the change of feed on
+        assert np.abs(out.target[:, :2] - points[vertex][:2]).sum(axis=1).min() == 0.0
+    assert out.feed[np.abs(out.target[:, :2] - points[333][:2]).sum(axis=1).argmin()] == 50.0
+    for size in SIZES:
+        assert same(run(FitSplines(), path, size)[0], out)
+
+
+def test_directions_at_kept_corners_are_those_of_the_chords() -> None:
+    t = np.linspace(0, 2, 80)
+    points = [(10 * cos(a), 10 * sin(a)) for a in t]
+    corner = points[-1]
+    points += [(corner[0] + 0.5 * sin(0.1 * i) + 0.1 * i, corner[1] + 0.3 * i) for i in range(1, 40)]
+    path = polyline(points)
+    out, _ = run(FitSplines(), path)
+    p = cubics(out)
+    last, first = p[:, :2, 1:].dot([1.0, 2.0, 3.0]), p[:, :2, 1]
+    at = int(np.abs(out.target[:, :2] - corner).sum(axis=1).argmin())
+    steps = np.diff(np.array(points), axis=0)
+    for got, chord in ((first[0], 0), (last[at], 78), (first[at + 1], 79), (last[-1], -1)):
+        cross = got[0] * steps[chord, 1] - got[1] * steps[chord, 0]
+        assert abs(cross) <= 1e-6 * np.linalg.norm(got) * np.linalg.norm(steps[chord])
+        assert got @ steps[chord] > 0
+
+
+def test_a_long_line_hands_its_direction_to_the_spline_behind_it() -> None:
+    line = [(-20.0, 0.0), (0.0, 0.0)]
+    t = np.linspace(0.02, 1.5, 60)
+    out, _ = run(FitSplines(), polyline(line + [(10 * sin(a), 10 - 10 * cos(a)) for a in t]))
+    assert out.kind[:2].tolist() == [Kind.LINE, Kind.POLYNOMIAL]
+    p = cubics(out)[0, :2]
+    assert abs(p[1, 1]) <= 1e-6 * p[0, 1]
+
+
+@pytest.mark.parametrize("z", [0.0, 2.0])
+def test_kernels_give_the_same_bits_as_plain_python(z: float) -> None:
+    path = polyline(curve(120, z=z))
+    for p in (FitArcs(), FitSplines()):
+        compiled, _ = run(p, path)
+        kernels.use(compiled=False)
+        assert same(run(p, path)[0], compiled)
+        kernels.use(compiled=True)
+
+
+@given(st.lists(st.floats(0.2, 5.0), min_size=1, max_size=8), st.integers(0, 1000))
+def test_pieces_of_a_spline_are_those_of_scipy_and_knots_move_it_as_said(
+    spans: list[float], seed: int
+) -> None:
+    n = len(spans)
+    knots = np.concatenate([[0.0], np.cumsum(spans)])
+    t, basis, rows = np.zeros(n + 7), np.zeros((n, 7, 4)), np.zeros((n, 8))
+    pad_knots(knots, n, t)
+    span_basis(t, n, basis)
+    control = np.random.default_rng(seed).normal(size=(n + 3, 2))
+    span_powers(basis, n, 2, control.ravel(), 2, rows)
+    v = np.linspace(0.0, 1.0, 7)[1:-1]
+    u = np.concatenate([a + h * v for a, h in zip(knots[:-1], spans, strict=True)])
+    owner, at = np.repeat(np.arange(n), 5), np.concatenate([h * v for h in spans])
+    powers = at[:, None] ** np.arange(4)
+    got = np.einsum("ip,icp->ic", powers, rows.reshape(n, 2, 4)[owner])
+    assert got == pytest.approx(BSpline(t, control, 3)(u), abs=1e-9)
+    for k in range(1, n):
+        step = 1e-4 * min(spans)
+        moved = [BSpline(t + sign * step * (np.arange(n + 7) == k + 3), control, 3)(u) for sign in (1, -1)]
+        slope = (moved[0] - moved[1]) / (2 * step)
+        jump = 6 * (rows[k, [3, 7]] - rows[k - 1, [3, 7]])
+        shape = np.array([
+            basis[j, k - j + 5] @ q if -1 <= k - j <= 1 else 0.0 for j, q in zip(owner, powers, strict=True)
+        ])  # fmt: skip
+        # slope + jump shape is a spline on the same knots.
+        rest = slope + shape[:, None] * jump
+        splines = BSpline.design_matrix(u, t, 3).toarray()
+        left = rest - splines @ np.linalg.lstsq(splines, rest, rcond=None)[0]
+        assert np.abs(left).max() <= 1e-5 * max(1.0, float(np.abs(slope).max()))
+
+
+@given(st.integers(0, 10_000))
+def test_the_bound_of_a_span_covers_its_chords(seed: int) -> None:
+    draw = np.random.default_rng(seed)
+    knots = np.concatenate([[0.0], np.cumsum(draw.uniform(0.5, 2.0, 3))])
+    t, basis, rows = np.zeros(10), np.zeros((3, 7, 4)), np.zeros((3, 8))
+    pad_knots(knots, 3, t)
+    span_basis(t, 3, basis)
+    control = np.column_stack([np.linspace(0, knots[-1], 6), np.zeros(6)]) + draw.normal(0, 0.3, (6, 2))
+    span_powers(basis, 3, 2, control.ravel(), 2, rows)
+    u = np.linspace(0, knots[-1], int(draw.integers(3, 9)))
+    spline = BSpline(t, control, 3)
+    points = spline(u) + draw.normal(0, 0.1, (len(u), 2))
+    errors, tangent = np.zeros(3), np.zeros((len(u), 2))
+    bound = chord_errors(points, points, t, 3, rows, u, tangent, errors, True)
+    assert bound == errors.max()
+    assert np.all(np.diff(u) >= 0)
+    s = np.linspace(0, 1, 200)[:, None]
+    true = 0.0
+    for i in range(len(u) - 1):
+        chord = points[i] + s * (points[i + 1] - points[i])
+        true = max(true, np.linalg.norm(chord - spline(u[i] + s[:, 0] * (u[i + 1] - u[i])), axis=1).max())
+    assert true <= bound * (1 + 1e-9)
 
 
 @pytest.mark.parametrize("p", [FitArcs(), FitSplines()], ids=repr)

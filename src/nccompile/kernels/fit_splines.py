@@ -370,7 +370,13 @@ def fit_spline(
     """
     dims = points.shape[1]
     extent = float(way[len(way) - 1])
-    first = min(_guess(points, way, tolerance, states), most)
+    first = _guess(points, way, tolerance, states)
+    # Three control points are held at a HELD end, and at least the two at the end otherwise bound.
+    for side in range(2):
+        if kinds[side] == HELD:
+            first = max(first, 2 if kinds[1 - side] != HELD else 3)
+    if first > most:
+        return 0
     t, errors, fresh = np.zeros(most + 7), np.zeros(most), np.ones(most, np.bool_)
     along, stiff, window = np.zeros(most), np.zeros(most), np.zeros(4, np.int64)
     for attempt in range(3):

@@ -12,6 +12,18 @@ changes, or a run is cut because it is long, the vertex stays and the spline is 
 
 In X-Y if Z stands still along the run, else in space.  Additional axes must move linearly with the way within
 the same number along each piece.  A run without a spline of fewer pieces than lines stays as it is.
+
+Example:
+    -p fit-splines{tolerance=0.01}
+    --- in
+    % t
+    N10 G1 X1 Y0.195090 F50
+    N20 G1 X2 Y0.382683
+    N30 G1 X3 Y0.555570
+    N40 G1 X4 Y0.707107
+    N50 G1 X5 Y0.831470
+    --- out
+    polynomial 5 0.83147 0 feed 50 source 2 xy u 0 5.466792 -1.488033 1.021241 v 0 1.066516 -0.329391 0.094344
 """
 
 from __future__ import annotations

@@ -124,6 +124,8 @@ def _settled(breaks: Rows) -> int:
 def _all_breaks(path: Toolpath, low: int, angle: float, ratio: float) -> Rows:
     """The breaks of a path of which the rows before `low` are done, with every run cut after LONGEST segments."""
     breaks = vertex_breaks(path, angle, ratio)
+    if breaks[low] == 0:  # the run was cut there
+        breaks[low] = JOINT
     at = np.flatnonzero(breaks[low:]) + low
     for first, last in pairwise([low, *at[at > low].tolist()]):
         if last - first > LONGEST:
