@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from nccompile.diagnostics import Diagnostics
 from nccompile.parser import ReadSource, parse, read_line
-from nccompile.parser.lines import plain_block, plain_header, read_by_grammar
+from nccompile.parser.lines import commented_block, plain_block, plain_header, read_by_grammar
 from nccompile.source import Source
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabnxyz"
@@ -31,6 +32,21 @@ def test_plain_blocks_equal_those_of_the_grammar(line: int, text: str) -> None:
         assert block == read_by_grammar(line, text)
 
 
+@given(st.integers(1, 10**6), LINES, st.text("(a ä1\t)", max_size=5), st.sampled_from(["", " ", "  ", "\t"]))
+def test_blocks_with_a_comment_equal_those_of_the_grammar(
+    line: int, text: str, said: str, blank: str
+) -> None:
+    whole = f"{text}{blank}({said})"
+    block = commented_block(line, whole)
+    if block is not None:
+        assert block == read_by_grammar(line, whole)
+
+
+@pytest.mark.parametrize("text", ["(a)", " (a)", "N10 (a)", "N10 G1 X1 F20 (a b)", "G1(a)", "n5 g1 x-.5  ()"])
+def test_common_lines_with_a_comment_are_plain(text: str) -> None:
+    assert commented_block(7, text) == read_by_grammar(7, text)
+
+
 @given(st.integers(1, 99), st.text("% aB_.-1(\t", max_size=6))
 def test_plain_headers_equal_those_of_the_grammar(line: int, text: str) -> None:
     header = plain_header(line, "%" + text)
@@ -38,7 +54,7 @@ def test_plain_headers_equal_those_of_the_grammar(line: int, text: str) -> None:
         assert header == read_by_grammar(line, "%" + text)
 
 
-@given(st.integers(1, 99), st.text("NGXYF0123456789.-+ ", max_size=24))
+@given(st.integers(1, 99), st.text("NGXYF0123456789.-+ ()", max_size=24))
 def test_so_do_those_of_any_text(line: int, text: str) -> None:
     assert read_line(line, text) == read_by_grammar(line, text)
 

@@ -1,6 +1,7 @@
 """One line of text to its node: plain blocks at once, every other line by the grammar.
 
     N10 G1 X1.5 Y-2 F20      plain: numbers behind letters, one blank between words
+    N10 G1 X1.5 (rough)      plain, with a comment at its end or nothing else
     N10 (rough) G1X$w$       by the grammar
 
 Plain lines are nearly all of a large program.  They are a part of what the grammar reads, and their nodes are
@@ -15,7 +16,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, TypeAlias
 
 from nccompile.parser.faults import Fault, explain
-from nccompile.parser.tree import Block, Header, Word
+from nccompile.parser.tree import Block, Comment, Header, Word
 from nccompile.source import Source
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "Node",
     "ReadSource",
     "Unread",
+    "commented_block",
     "placed",
     "placed_block",
     "plain_block",
@@ -37,6 +39,7 @@ MAX_LINE = 65_536
 _WORD = r"[A-MO-Za-mo-z][+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 _PLAIN_HEADER = re.compile(r"% ?([A-Za-z0-9_.-]*)")
 _PLAIN = re.compile(rf"(?:[Nn][0-9]+|{_WORD})(?: {_WORD})*")
+_COMMENTED = re.compile(rf"((?:{_PLAIN.pattern})?) *\(([^()]*)\)")
 _NUMBER_FIRST = re.compile(r"[ \t/]*([Nn])([0-9]+)(?![0-9.])")
 
 
@@ -62,7 +65,7 @@ def read_line(line: int, text: str) -> Node:
     """The node of one line."""
     if text[:1] == "%":
         return plain_header(line, text) or read_by_grammar(line, text)
-    return plain_block(line, text) or read_by_grammar(line, text)
+    return plain_block(line, text) or commented_block(line, text) or read_by_grammar(line, text)
 
 
 def plain_header(line: int, text: str) -> Header | None:
@@ -84,6 +87,19 @@ def plain_block(line: int, text: str) -> Block | None:
         column += len(part) + 1
     number = words.pop(0) if words[0][0] == "N" else None
     return Block(line, 1, column - 1, number, tuple(words))
+
+
+def commented_block(line: int, text: str) -> Block | None:
+    """The block of a plain line that ends with a comment, or of a comment alone; None for every other line."""
+    found = _COMMENTED.fullmatch(text) if text[-1:] == ")" and len(text) <= MAX_LINE else None
+    if found is None:
+        return None
+    comments = (Comment(found[2], line, found.start(2)),)
+    end = len(text) + 1
+    if not found[1]:
+        return Block(line, found.start(2), end, None, (), comments=comments)
+    block = plain_block(line, found[1])
+    return None if block is None else block._replace(end=end, comments=comments)
 
 
 def read_by_grammar(line: int, text: str) -> Node:
