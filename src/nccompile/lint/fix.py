@@ -18,7 +18,7 @@ from nccompile.toolchain import Options
 
 __all__ = ["Fixed", "apply_fixes"]
 
-MAX_ROUNDS = 10
+MAX_ROUNDS = 40
 """A fix may open the way for another one; more rounds than this no program needs."""
 
 
