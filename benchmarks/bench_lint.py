@@ -55,6 +55,8 @@ def main() -> None:
         path = Path(name) / "p.nc"
         path.write_text(program(LINES))
         print(_row(f"{LINES:,} lines", *_lint(path)))
+        path.write_text("% a\n" + "(a comment, a whole line)\n" * LINES)
+        print(_row(f"{LINES:,} comments", *_lint(path)))
         path.write_text("")
         print(_row("empty file", *_lint(path)))
         path.write_text("% a\n(a comment)\n")
