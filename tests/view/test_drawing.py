@@ -16,7 +16,7 @@ from PIL import Image
 from nccompile.errors import UsageError
 from nccompile.toolpath.columns import EventKind, Floats, Kind, Toolpath
 from nccompile.view.drawing import Drawing, draw, thin
-from nccompile.view.motion import Motion, envelope, gather
+from nccompile.view.motion import Caps, Motion, caps, envelope, gather
 from nccompile.view.plot import save
 from tests.toolpath.paths import Builder, rich
 
@@ -142,6 +142,24 @@ def test_velocity_and_acceleration_are_difference_quotients() -> None:
     assert a[101] == pytest.approx(-10000.0, rel=1e-9)
     assert np.isnan(v[102])  # the jump of a G92 is no velocity
     assert np.isnan(a[102])
+    j = motion.jerks()[:, 0]
+    assert j[2:101] == pytest.approx(np.zeros(99), abs=1e-3)
+    assert j[101] == pytest.approx(-10100.0 / 0.01, rel=1e-9)
+
+
+def test_caps_follow_the_times_of_the_rows() -> None:
+    planned = [
+        chunk.replace(
+            feed=np.where(chunk.length > 0.0, 30.0, 0.0), v_limit=np.full(len(chunk), 50.0),
+            v_junction=np.zeros(len(chunk)), v_end=np.zeros(len(chunk)),
+        )
+        for chunk in (rich().rows(0, 2), rich().rows(2, 5))
+    ]  # fmt: skip
+    found = caps(planned, lambda chunk, before: np.full(len(chunk), 0.5))
+    assert found.t.tolist() == [0.0, 0.5, 1.0, 1.5, 2.0, 2.5]
+    moving = np.concatenate([chunk.length > 0.0 for chunk in planned])
+    assert np.array_equal(np.isfinite(found.feed[1:]), moving)
+    assert set(found.limit[1:][moving]) == {50.0}
 
 
 def test_nothing_sampled_is_an_empty_motion() -> None:
@@ -153,9 +171,10 @@ def test_nothing_sampled_is_an_empty_motion() -> None:
 class Bounds(NamedTuple):
     velocity: Floats
     acceleration: Floats
+    jerk: Floats
 
 
-BOUNDS = Bounds(np.array([120.0, 120.0, np.inf]), np.array([1e4, 1e4, np.inf]))
+BOUNDS = Bounds(*(np.array([bound, bound, np.inf]) for bound in (120.0, 1e4, 1e5)))
 
 
 def colours(drawing: Path, colour: tuple[int, int, int]) -> int:
@@ -172,6 +191,9 @@ def test_pictures_have_rapids_green_feeds_blue_and_the_same_bytes_again(tmp_path
     assert colours(one, (0x2F, 0x9E, 0x44)) > 50
     assert colours(one, (0x1C, 0x5F, 0xB8)) > 500
     assert Image.open(one).size == (1760, 990)
+    bounded = tmp_path / "bounded.png"
+    save(bounded, [rich()], ramp(), BOUNDS, Caps(np.array([0.0, 1.0]), np.full(2, 90.0), np.full(2, 95.0)))
+    assert colours(bounded, (0xE0, 0x31, 0x31)) > colours(one, (0xE0, 0x31, 0x31)) + 50
     plain = tmp_path / "plain.png"
     save(plain, [rich()])
     assert colours(plain, (0xD9, 0x48, 0x0F)) > 20  # switch points

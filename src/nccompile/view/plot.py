@@ -237,23 +237,14 @@ def _dynamics(
     path.set_ylim(0.0, top)
     moving = motion.moving()
     rotary = any(motion.axes[i] in "ABC" for i in moving)
-    for axes, name, symbol, unit, values, limit in (
-        (velocity, "velocity", "v", "/s", motion.velocities(), None if limits is None else limits.velocity),
-        (
-            acceleration,
-            "acceleration",
-            "a",
-            "/s²",
-            motion.accelerations(),
-            None if limits is None else limits.acceleration,
-        ),
-        (jerk, "jerk", "j", "/s³", motion.jerks(), None if limits is None else limits.jerk),
+    for axes, name, unit, values in (
+        (velocity, "velocity", "/s", motion.velocities()),
+        (acceleration, "acceleration", "/s²", motion.accelerations()),
+        (jerk, "jerk", "/s³", motion.jerks()),
     ):
-        _per_axis(axes, motion, values, moving, limit)
-        axes.set(
-            title=f"Axis {name}",
-            ylabel=f"{symbol} [mm{unit}, deg{unit}]" if rotary else f"{symbol} [mm{unit}]",
-        )
+        _per_axis(axes, motion, values, moving, None if limits is None else getattr(limits, name))
+        units = f"mm{unit}, deg{unit}" if rotary else f"mm{unit}"
+        axes.set(title=f"Axis {name}", ylabel=f"{name[0]} [{units}]")
     jerk.set(xlabel="time [s]")
     jerk.margins(x=0.01)
 
