@@ -4,7 +4,7 @@
 # make bench   the benchmarks
 # make docs     writes the pages of the diagnostic codes anew
 # make vscode   tests the VS Code extension and makes its .vsix; needs Node 20 and npm
-# make accept  rewrites the golden files; read the difference before committing it
+# make accept  rewrites the golden files and the results of tests/passes/*/*.case; read the difference before committing
 
 PYTHON ?= $(shell command -v python3.11 || command -v python3 || echo python)
 VENV ?= .venv
@@ -40,8 +40,8 @@ vscode: $(VENV)/.installed-dev
 	cd editors/vscode && npm ci && NCCOMPILE=$(abspath $(BIN))/nccompile npm test && npm run package
 
 accept: $(VENV)/.installed-dev
-	NCCOMPILE_ACCEPT=1 $(BIN)/python -m pytest tests/golden
-	git status --short tests/golden
+	NCCOMPILE_ACCEPT=1 $(BIN)/python -m pytest tests/golden tests/passes/test_cases.py
+	git status --short tests/golden tests/passes
 
 clean:
 	rm -rf $(VENV) build demo-out .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache

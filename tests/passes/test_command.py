@@ -41,9 +41,10 @@ def test_times_reports_and_prints(program: Path, capsys: pytest.CaptureFixture[s
     assert run(["compile", str(program), "-p", passes, *options]) == 0
     said = capsys.readouterr().err
     assert "line 21.0 -1.0 0.0" in said
-    assert "6 -> 12 segments" in said
     first, second = json.loads(report.read_text())["passes"]
-    assert (first["name"], first["segments_out"]) == ("tool-radius", 12)
+    assert (first["name"], first["segments_in"]) == ("tool-radius", 6)
+    assert first["segments_out"] == second["segments_in"] > 6
+    assert f"6 -> {first['segments_out']} segments" in said
     assert second["deviation"] <= 0.005
 
 
@@ -60,6 +61,24 @@ def test_mistakes_in_the_specification(program: Path, capsys: pytest.CaptureFixt
     assert run(["compile", str(program), "-p", "split{segment=99}"]) == 2
     assert not program.with_suffix(".ncq").exists()
     assert run(["compile", str(program), "-p", "fit-arcs", "--print-after", "flatten"]) == 2
+
+
+def test_correction_and_smoothing_on_one_stretch_leave_no_queue(
+    program: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program.write_text(PROGRAM.replace("N4 G1 Y10", "N4 G51\nN5 G1 Y10"))
+    assert run(["compile", str(program), "-p", "tool-radius,smooth-corners"]) == 1
+    said = capsys.readouterr().err
+    assert "error[NC304]: tool-radius and smooth-corners both act from here on" in said
+    assert "N5 G1 Y10" in said
+    assert not program.with_suffix(".ncq").exists()
+    assert run(["compile", str(program), "-p", "tool-radius"]) == 0
+
+
+def test_a_matrix_may_have_blanks_and_semicolons(program: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    spec = "transform{matrix=0 -1 0; 1 0 0; 0 0 1}"
+    assert run(["dump", str(program), "--stage", "passes", "-p", spec]) == 0
+    assert "line 0.0 20.0 0.0" in capsys.readouterr().out.replace("-0.0", "0.0")
 
 
 def test_dump_and_plot_show_the_passes(program: Path, capsys: pytest.CaptureFixture[str]) -> None:
