@@ -46,6 +46,31 @@ def contour(chords: int) -> str:
     return "\n".join(lines) + "\n"
 
 
+def trochoid(chords: int) -> str:
+    """One contour that crosses itself once a turn of 200 chords: x = 0.4 t - sin t, y = 1 - cos t [mm]."""
+    lines = ["% trochoid", "N1 G1 X0 Y0 F50 E1000 E-1000"]
+    for i in range(1, chords):
+        t = 0.0314159 * i
+        lines.append(f"G1 X{0.4 * t - sin(t):.4f} Y{1.0 - cos(t):.4f}")
+    return "\n".join(lines) + "\n"
+
+
+def growth() -> None:
+    """How the time of correction and loop avoidance grows with the length of one contour."""
+    for text, program in (
+        ("avoid-loops{everywhere}", trochoid),
+        ("tool-radius{radius=0.1,gouge=warn,everywhere}", trochoid),
+    ):
+        rates = []
+        for count in (10_000, 100_000, 1_000_000):
+            chunks = list(decode(Source("one.nc", program(count)), DecodeOptions(), Diagnostics()))
+            deque(parse(text).run(chunks, measure=False), maxlen=0)
+            begin = time.process_time()
+            deque(parse(text).run(chunks, measure=False), maxlen=0)
+            rates.append(f"{count}: {1e6 * (time.process_time() - begin) / count:.2f} µs")
+        print(f"  {text:50} a segment of one contour of  {',  '.join(rates)}")
+
+
 def main() -> None:
     """Prints one line a pass."""
     source = Source("smooth.nc", contour(CHORDS))
@@ -65,3 +90,4 @@ def main() -> None:
         said = "" if off is None else f", deviation {off:.4f} mm"
         rate = CHORDS / min(times) / 1e6
         print(f"  {text:50} {out:7} segments  {rate:8.3f} million a second{said}")
+    growth()

@@ -224,7 +224,7 @@ def test_all_pairs_of_kinds_meet_where_their_chords_do(kind: Kind, other: Kind, 
         return  # one circle or ellipse
     crossings = [p for p in shapely.get_parts(lines[0].intersection(lines[1])) if p.geom_type == "Point"]
     for point in crossings:
-        # Two crossings near each other are those of nearly tangent curves: of these one may be missed.
+        # Of two crossings of nearly tangent free curves one may be missed; chords put them some way off.
         is_alone = sum(point.distance(other) < 2.0 for other in crossings) == 1
         at_end = any(
             point.distance(shapely.Point(line.coords[at])) < 0.02 for line in lines for at in (0, -1)

@@ -15,7 +15,7 @@ import numpy as np
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows, segment_box
 from nccompile.kernels.curve_points import ARC, ELLIPSE, POLYNOMIAL, Floats, point, second
-from nccompile.kernels.intersect import COMMON, intersections, place, share_of
+from nccompile.kernels.intersect import COMMON, place, plain_intersections, share_of
 
 __all__ = ["chord_count", "chords", "deepest", "foot"]
 
@@ -100,7 +100,7 @@ def _nearest(
             out[1] = y
     # Where they cross, an end of the shorter one is within half of its length.
     is_near = best > 0.0 and 2.0 * best <= min(_size(kind, p, e), _size(other, q, f))
-    if is_near and intersections(kind, p, e, other, q, f, us, vs) > 0:
+    if is_near and plain_intersections(kind, p, e, other, q, f, us, vs) > 0:
         x, y = place(kind, p, e, float(us[0]))
         out[0] = x
         out[1] = y

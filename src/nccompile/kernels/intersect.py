@@ -3,8 +3,9 @@
     kind   LINE or positioning (straight), ARC, ELLIPSE, POLYNOMIAL;  p: its curve row, f8 (12,), unused if straight
     e      f8 (4,): x and y of its start, x and y of its end
 
-Lines and arcs meet in closed form.  An ellipse or a cubic is looked at as a chain of chords; where one of them
-meets the other segment, Newton on P(u) = Q(v) finds the point itself.
+Lines and arcs meet in closed form; with an ellipse or cubic they do where its distance from them is 0.  Two ellipses
+or cubics are looked at as chains of chords; where chords meet, Newton on P(u) = Q(v) finds the point itself, so two
+points very near each other may be missed.
 """
 
 from math import acos, atan2, floor, sqrt
@@ -15,12 +16,22 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, derivative, point
 
-__all__ = ["COMMON", "Kinds", "intersections", "own_crossing", "place", "share_of", "slope"]
+__all__ = [
+    "COMMON",
+    "Kinds",
+    "intersections",
+    "own_crossing",
+    "place",
+    "plain_intersections",
+    "share_of",
+    "slope",
+]
 
 Kinds = npt.NDArray[np.uint8]
 
 _TURN = 6.283185307179586
 _CHORDS = 24
+_GOLDEN = 0.6180339887498949
 _SLACK = 1e-9  # [mm] by which a segment may be missed beyond its end
 COMMON = 48
 """Common points of two segments at most."""
@@ -144,14 +155,10 @@ def _arcs(p: Floats, q: Floats, us: Floats, vs: Floats) -> int:
 
 
 @kernel
-def intersections(
+def plain_intersections(
     kind: int, p: Floats, e: Floats, other: int, q: Floats, f: Floats, us: Floats, vs: Floats
 ) -> int:  # fmt: skip
-    """The common points of two segments, e and f their ends.
-
-    us, vs: Shape (COMMON,), out: curve parameters 0..1 on the first and the second;  returns their number.  Parts
-    that run on each other count as having none.
-    """
+    """`intersections` of lines and arcs only: what uses nothing else need not compile the rest."""
     straight = kind < ARC or kind > POLYNOMIAL
     other_straight = other < ARC or other > POLYNOMIAL
     if straight and other_straight:
@@ -167,11 +174,135 @@ def intersections(
         return _line_arc(e, q, us, vs, False)
     if kind == ARC and other_straight:
         return _line_arc(f, p, us, vs, True)
-    if kind == ARC and other == ARC:
-        return _arcs(p, q, us, vs)
+    return _arcs(p, q, us, vs)
+
+
+@kernel
+def _off(kind: int, p: Floats, e: Floats, other: int, q: Floats, v: float) -> float:
+    """Distance [mm] of a place on an ellipse or cubic from a line (+: left of it) or a circle (+: outside)."""
+    x, y = point(other, q, v)
+    if kind == ARC:
+        dx = x - float(p[0])
+        dy = y - float(p[1])
+        return sqrt(dx * dx + dy * dy) - float(p[2])
+    ex = float(e[2]) - float(e[0])
+    ey = float(e[3]) - float(e[1])
+    return ((y - float(e[1])) * ex - (x - float(e[0])) * ey) / sqrt(ex * ex + ey * ey)
+
+
+@kernel
+def _root(kind: int, p: Floats, e: Floats, other: int, q: Floats, low: float, high: float) -> float:
+    """Where between low and high `_off` changes its sign, by bisection."""
+    at_low = _off(kind, p, e, other, q, low)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if (_off(kind, p, e, other, q, middle) > 0.0) == (at_low > 0.0):
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)
+
+
+@kernel
+def _flattest(kind: int, p: Floats, e: Floats, other: int, q: Floats, low: float, high: float) -> float:
+    """Where between low and high a curve comes nearest to a line or circle, by golden section."""
+    for _ in range(45):
+        a = high - _GOLDEN * (high - low)
+        b = low + _GOLDEN * (high - low)
+        if abs(_off(kind, p, e, other, q, a)) < abs(_off(kind, p, e, other, q, b)):
+            high = b
+        else:
+            low = a
+    return 0.5 * (low + high)
+
+
+@kernel
+def _add_free(
+    kind: int, p: Floats, e: Floats, other: int, q: Floats, v: float, us: Floats, vs: Floats, count: int, swap: bool
+) -> int:  # fmt: skip
+    """Adds the place v of an ellipse or cubic if it is on the line or arc, and new."""
+    x, y = point(other, q, v)
+    if kind == ARC:
+        u = share_of(p, x, y)
+        slack = _SLACK / (float(p[2]) * abs(float(p[4])))
+    else:
+        ex = float(e[2]) - float(e[0])
+        ey = float(e[3]) - float(e[1])
+        size = ex * ex + ey * ey
+        u = ((x - float(e[0])) * ex + (y - float(e[1])) * ey) / size
+        slack = _SLACK / sqrt(size)
+    for k in range(count):
+        if abs((us[k] if swap else vs[k]) - v) < 1e-7:
+            return count
+    if swap:
+        return _keep(us, vs, count, v, u, 0.0, slack)
+    return _keep(us, vs, count, u, v, slack, 0.0)
+
+
+@kernel
+def _with_free(
+    kind: int, p: Floats, e: Floats, other: int, q: Floats, us: Floats, vs: Floats, swap: bool
+) -> int:  # fmt: skip
+    """Common points of a line or arc with an ellipse or cubic: where its distance from them is 0.
+
+    The distance is looked at in _CHORDS steps; where it comes near to 0 and turns back, its least value is sought,
+    for there may be two common points, or one where they touch.
+    """
+    if kind != ARC and e[0] == e[2] and e[1] == e[3]:
+        return 0
     count = 0
-    m = 1 if straight else _CHORDS
-    n = 1 if other_straight else _CHORDS
+    before = _off(kind, p, e, other, q, 0.0)
+    here = before
+    if abs(before) <= _SLACK:
+        count = _add_free(kind, p, e, other, q, 0.0, us, vs, count, swap)
+    for i in range(1, _CHORDS + 1):
+        v = i / _CHORDS
+        last = v - 1.0 / _CHORDS
+        after = _off(kind, p, e, other, q, v)
+        if (after > 0.0) != (here > 0.0):
+            count = _add_free(kind, p, e, other, q, _root(kind, p, e, other, q, last, v), us, vs, count, swap)
+        if i == _CHORDS and abs(after) <= _SLACK:
+            count = _add_free(kind, p, e, other, q, 1.0, us, vs, count, swap)
+        is_same = (after > 0.0) == (here > 0.0) and (before > 0.0) == (here > 0.0)
+        if is_same and abs(here) <= abs(before) and abs(here) <= abs(after):
+            low = max(last - 1.0 / _CHORDS, 0.0)
+            flat = _flattest(kind, p, e, other, q, low, v)
+            least = _off(kind, p, e, other, q, flat)
+            if (least > 0.0) != (here > 0.0):
+                count = _add_free(
+                    kind, p, e, other, q, _root(kind, p, e, other, q, low, flat), us, vs, count, swap
+                )
+                count = _add_free(
+                    kind, p, e, other, q, _root(kind, p, e, other, q, flat, v), us, vs, count, swap
+                )
+            elif abs(least) <= _SLACK:
+                count = _add_free(kind, p, e, other, q, flat, us, vs, count, swap)
+        before = here
+        here = after
+    return count
+
+
+@kernel
+def intersections(
+    kind: int, p: Floats, e: Floats, other: int, q: Floats, f: Floats, us: Floats, vs: Floats
+) -> int:  # fmt: skip
+    """The common points of two segments, e and f their ends.
+
+    us, vs: Shape (COMMON,), out: curve parameters 0..1 on the first and the second;  returns their number.  Parts
+    that run on each other count as having none.
+    """
+    straight = kind < ARC or kind > POLYNOMIAL
+    other_straight = other < ARC or other > POLYNOMIAL
+    if (straight or kind == ARC) and (other_straight or other == ARC):
+        return plain_intersections(kind, p, e, other, q, f, us, vs)
+    if straight or kind == ARC:
+        return _with_free(kind, p, e, other, q, us, vs, False)
+    if other_straight or other == ARC:
+        return _with_free(other, q, f, kind, p, us, vs, True)
+    count = 0
+    m = n = _CHORDS
     x0, y0 = place(kind, p, e, 0.0)
     for i in range(m):
         x1, y1 = place(kind, p, e, (i + 1.0) / m)
