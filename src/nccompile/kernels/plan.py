@@ -27,7 +27,7 @@ _SPACE = 3
 _S_SLOPE = 1.875  # greatest slope of 10 w³ - 15 w⁴ + 6 w⁵
 _S_BEND = 5.773502691896258  # greatest second derivative of it, 10 / sqrt(3)
 
-_TANGENTIAL = 0.6  # on curves: share of an axis's acceleration for changing the path velocity;
+_TANGENTIAL = 0.6  # on curves: share of an axis's acceleration that changing the path velocity has at least;
 #                    0.8 is left for following the curve, since 0.6² + 0.8² = 1 and both are at right angles
 
 
@@ -45,7 +45,8 @@ def row_limits(
     Changes feed (of positionings), accel, decel; writes v_limit, t_start, t_end.
 
     On a curve of curvature c, the tangential share at and the normal share an of an axis's limit a hold
-    at² + an² <= a²:  v_limit = sqrt(an / c); where the program accelerates less than 0.6 a, an takes the rest.
+    at² + an² <= a²:  at is what an = c feed² leaves, at least 0.6 a;  v_limit = sqrt(an / c), and where the program
+    accelerates less than at, an takes the rest (docs/decisions/077).
     creep (k,) [mm/s] is allowed at any curvature.
     """
     axes = target.shape[1]
@@ -118,8 +119,11 @@ def row_limits(
                 v_plane = min(v_plane, float(v_axis[2]))
             if share > 0.0 and straight[i] == 0:
                 v_top = min(v_top, v_plane / share)
-                a_top = min(a_top, _TANGENTIAL * a_plane / (share * peak))
                 bend = share * share * max_curvature(int(kind[i]), p)
+                # What the bend leaves at the row's feed: _TANGENTIAL where it is sharp, nearly all where it is slight.
+                across = float(feed[i]) * float(feed[i]) * bend / a_plane
+                along = max(sqrt(max(1.0 - across * across, 0.0)), _TANGENTIAL)
+                a_top = min(a_top, along * a_plane / (share * peak))
                 wanted = min(max(accel[i], decel[i]), a_top) * peak * share
                 if bend > 0.0:
                     slow = min(float(creep[first]), float(creep[second]))
