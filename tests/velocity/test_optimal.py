@@ -184,13 +184,16 @@ def test_axes_stay_inside_their_limits_on_random_paths(path: Toolpath) -> None:
 
 
 @settings(max_examples=25, deadline=None)
-@given(paths(most=12))
-def test_never_slower_than_look_ahead_and_not_moved_by_chunks(path: Toolpath) -> None:
-    whole = planned(path, GENERIC)
-    other = planned(path, GENERIC, size=2)
+@given(paths(most=12), st.sampled_from([None, 0.01]))
+def test_never_slower_than_look_ahead_and_not_moved_by_chunks(
+    path: Toolpath, deviation: float | None
+) -> None:
+    options = replace(GENERIC, junction_deviation=deviation)  # corners look at the lengths of whole segments
+    whole = planned(path, options)
+    other = planned(path, options, size=2)
     for name in ("target", "v_end", "v_limit", "v_junction", "accel", "decel"):
         assert np.array_equal(getattr(whole, name), getattr(other, name)), name
-    slow = planned(path, replace(GENERIC, planner=LOOK_AHEAD))
+    slow = planned(path, replace(options, planner=LOOK_AHEAD))
     assert row_times(whole, 0.0).sum() <= row_times(slow, 0.0).sum() * (1 + 1e-3) + 1e-9
 
 

@@ -27,7 +27,7 @@ from nccompile.kernels.jerk_join import JOINED, join
 from nccompile.kernels.jerk_limits import jerk_limits, rest_caps
 from nccompile.kernels.jerk_march import PIECES, march
 from nccompile.passes.velocity.cuts import cut_at_bends
-from nccompile.passes.velocity.limits import limited
+from nccompile.passes.velocity.limits import limited, unfinished
 from nccompile.passes.velocity.parts import Parts, parted
 from nccompile.passes.velocity.settings import PlanSettings
 from nccompile.toolpath.columns import Floats, Ints, Kind, Toolpath
@@ -59,6 +59,7 @@ class _Stage:
 
     settings: PlanSettings
     _held: list[Toolpath] = field(default_factory=list, init=False)
+    _before: float = field(default=0.0, init=False)  # of the first segment held, what is out already
     _rows: int = field(default=0, init=False)  # rows held
     _block: int = field(default_factory=lambda: _BLOCK, init=False)
     _v_before: float = field(default=0.0, init=False)
@@ -88,7 +89,7 @@ class _Stage:
         held = Toolpath.join(self._held)
         self._held = [held]
         complete = rows == len(held)
-        path, jerk = _limited(held.rows(0, rows), self.settings)
+        path, jerk = _limited(held.rows(0, rows), self.settings, self._before)
         plan = _planned(path, jerk, self._v_before, self._window, complete=complete)
         if plan is None:  # never seen: what was settled before cannot be run on from; the end before can
             rows, complete = self._known, True
@@ -103,6 +104,7 @@ class _Stage:
         self._known = rows - plan.rows
         self._held = [held.rows(plan.rows, len(held))]
         self._rows -= plan.rows
+        self._before = unfinished(path.rows(0, plan.rows), self._before)
         out = _cut(path.rows(0, plan.rows), jerk, plan).replace(first=self._out)
         assert out.v_end is not None
         self._v_before = float(out.v_end[-1]) if len(out) else 0.0
@@ -138,9 +140,9 @@ def _without_profiles(path: Toolpath) -> Toolpath:
     return out.replace(length=np.where(bits[row] != 0, path_lengths(out), out.length))
 
 
-def _limited(path: Toolpath, settings: PlanSettings) -> tuple[Toolpath, Floats]:
+def _limited(path: Toolpath, settings: PlanSettings, before: float) -> tuple[Toolpath, Floats]:
     """The chunk with its limits, and the greatest path jerk of its rows."""
-    path, _ = limited(path, settings)
+    path, _ = limited(path, settings, before)
     assert path.v_limit is not None
     assert path.v_junction is not None
     v_limit, accel, decel = path.v_limit.copy(), path.accel.copy(), path.decel.copy()

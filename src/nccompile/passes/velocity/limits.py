@@ -8,12 +8,13 @@ import numpy as np
 
 from nccompile.kernels import plan as kernels
 from nccompile.kernels.corners import junctions
+from nccompile.kernels.interpolator_rows import CONTINUES
 from nccompile.kernels.timelaw import peak_factor
 from nccompile.kernels.turns import turn_limits
 from nccompile.passes.velocity.settings import SOFTMOTION, TIME_OPTIMAL, PlanSettings
 from nccompile.toolpath.columns import Floats, Toolpath
 
-__all__ = ["creep", "limited"]
+__all__ = ["creep", "limited", "unfinished"]
 
 _UNLIMITED = 1e6
 """v_limit of segments that nothing but their feed limits [mm/s]: the greatest velocity a machine may have."""
@@ -33,9 +34,30 @@ def creep(settings: PlanSettings) -> Floats:
     return np.where(stepped, 0.5 * axis.velocity_step, 0.2 * axis.acceleration * settings.cycle)
 
 
-def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
+def _whole_lengths(chunk: Toolpath, before: float) -> Floats:
+    """Shape (n,): the length of the segment that each row is a part of; before [mm]: parts of the first one's."""
+    parted = (chunk.profile >> np.uint16(CONTINUES)) & 1
+    if before == 0.0 and not parted.any():
+        return chunk.length
+    segment = np.append(0, np.cumsum(1 - parted[:-1].astype(np.int64)))
+    whole: Floats = np.bincount(segment, chunk.length).astype(np.float64)
+    whole[0] += before
+    out: Floats = whole[segment]
+    return out
+
+
+def unfinished(done: Toolpath, before: float) -> float:
+    """Length of the parts put out so far of the segment that goes on behind `done` [mm]; before: as for `limited`."""
+    if not len(done) or (int(done.profile[-1]) >> CONTINUES) & 1 == 0:
+        return 0.0
+    return float(_whole_lengths(done, before)[-1])
+
+
+def limited(chunk: Toolpath, settings: PlanSettings, before: float = 0.0) -> tuple[Toolpath, int]:
     """The chunk with feed, accel and decel in force, v_limit and v_junction; v_end is 0.
 
+    At junctions a row counts with the length of the whole segment it is a part of; before: length of those parts of
+    the first segment that are not in the chunk any more (`unfinished`).
     Returns it with the number of leading rows whose junction is known: the last row that moves waits for the
     next one.
     """
@@ -59,7 +81,7 @@ def limited(chunk: Toolpath, settings: PlanSettings) -> tuple[Toolpath, int]:
     v_limit = np.where(np.isfinite(v_limit), v_limit, np.maximum(feed, _UNLIMITED))
     chord = 2.0 * sin(0.5 * settings.angle_tolerance)
     known = junctions(
-        chunk.kind, chunk.length, v_limit, np.minimum(accel, decel), t_start, t_end, axis.acceleration,
+        chunk.kind, _whole_lengths(chunk, before), v_limit, np.minimum(accel, decel), t_start, t_end, axis.acceleration,
         axis.velocity_step, chord, settings.cycle, settings.rule, settings.junction_deviation or 0.0,
         int(settings.rapid_stops), v_junction,
     )  # fmt: skip

@@ -19,7 +19,7 @@ import numpy.typing as npt
 from nccompile.kernels import expect_work
 from nccompile.kernels import reach as kernels
 from nccompile.passes.velocity.cuts import cut_at_bends
-from nccompile.passes.velocity.limits import limited
+from nccompile.passes.velocity.limits import limited, unfinished
 from nccompile.passes.velocity.settings import PlanSettings
 from nccompile.toolpath.columns import Floats, Kind, Toolpath
 
@@ -61,6 +61,7 @@ class _Stage:
     _held: Toolpath | None = field(default=None, init=False)
     _x: float = field(default=0.0, init=False)  # v² before the rows held
     _out: int = field(default=0, init=False)
+    _before: float = field(default=0.0, init=False)  # of the first segment held, what is out already
 
     def feed(self, chunk: Toolpath) -> Iterator[Toolpath]:
         """Takes the next chunk; yields what nothing can change any more."""
@@ -76,7 +77,7 @@ class _Stage:
 
     def _settle(self, *, complete: bool) -> Iterator[Toolpath]:
         assert self._held is not None
-        path, known = limited(self._held, self.settings)
+        path, known = limited(self._held, self.settings, self._before)
         a_axis = (1.0 - _SLACK) * self.settings.limits.acceleration[:3]
         bends = _bends(path, a_axis)
         expect_work(_WORK * int(bends.curved.sum()))
@@ -105,6 +106,7 @@ class _Stage:
         kernels.ramps(*given, x, accel, decel)
         yield self._planned(done.replace(accel=accel, decel=decel), x, bends.curved)
         self._x = float(x[-1])
+        self._before = unfinished(done, self._before)
         self._held = None if rows == len(path) else self._held.rows(rows, len(path))
 
     def _planned(self, done: Toolpath, x: Floats, curved: Flags) -> Toolpath:

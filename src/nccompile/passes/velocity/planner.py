@@ -31,7 +31,7 @@ import numpy as np
 from nccompile.kernels import plan as kernels
 from nccompile.passes.velocity.cuts import cut_at_bends
 from nccompile.passes.velocity.jerk import smoothest
-from nccompile.passes.velocity.limits import limited
+from nccompile.passes.velocity.limits import limited, unfinished
 from nccompile.passes.velocity.optimal import fastest
 from nccompile.passes.velocity.settings import JERK, TIME_OPTIMAL, PlanSettings
 from nccompile.toolpath.columns import EventKind, Floats, Kind, Toolpath
@@ -62,6 +62,7 @@ class Planner:
     _idle: Toolpath | None = field(default=None, init=False)
     _v_before: float = field(default=0.0, init=False)
     _out: int = field(default=0, init=False)  # rows put out
+    _before: float = field(default=0.0, init=False)  # of the first segment pending, what is out already
 
     def feed(self, chunk: Toolpath) -> Iterator[Toolpath]:
         """Takes the next chunk; yields what it settles."""
@@ -83,24 +84,27 @@ class Planner:
 
     def _settle(self, *, complete: bool) -> Iterator[Toolpath]:
         assert self._pending is not None
-        planned, settled = plan_window(self._pending, self.settings, self._v_before, complete=complete)
+        planned, settled = plan_window(
+            self._pending, self.settings, self._v_before, complete=complete, before=self._before
+        )
         if settled == 0:
             return
         done = planned.rows(0, settled)
         assert done.v_end is not None
         self._v_before = float(done.v_end[-1])
+        self._before = unfinished(done, self._before)
         self._pending = self._pending.rows(settled, len(planned)) if settled < len(planned) else None
         yield done.replace(first=self._out)
         self._out += len(done)
 
 
 def plan_window(
-    window: Toolpath, settings: PlanSettings, v_before: float, *, complete: bool
+    window: Toolpath, settings: PlanSettings, v_before: float, *, complete: bool, before: float = 0.0
 ) -> tuple[Toolpath, int]:
-    """A window with its velocities planned, and how many of its leading rows are settled."""
+    """A window with its velocities planned, and how many of its leading rows are settled; before: as `limited`."""
     known = len(window)
     if window.v_limit is None:
-        window, known = limited(window, settings)
+        window, known = limited(window, settings, before)
     assert window.v_limit is not None
     assert window.v_junction is not None
     v_end = np.empty(len(window))
