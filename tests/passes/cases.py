@@ -28,6 +28,7 @@ from nccompile.source import Source
 from nccompile.toolpath.columns import Toolpath
 from nccompile.toolpath.text import format_toolpath, parse_toolpath
 from nccompile.toolpath.verify import verify_chain
+from tests.passes.paths import windows
 
 __all__ = ["Case", "agree", "examples_in", "run_case"]
 
@@ -85,7 +86,8 @@ def run_case(case: Case, size: int = 0) -> str:
 
     step = size or max(len(path), 1)
     chunks = [path.rows(at, at + step) for at in range(0, max(len(path), 1), step)]
-    out = Toolpath.join(list(parse(case.spec).run(chunks, diagnose=diagnose, after=after)))
+    with windows(size):
+        out = Toolpath.join(list(parse(case.spec).run(chunks, diagnose=diagnose, after=after)))
     return "\n".join([*_shown(format_toolpath(out.replace(length=out.length * 0.0))), *findings])
 
 

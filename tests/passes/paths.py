@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from math import cos, sin
 
 import numpy as np
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 from nccompile.geometry.parts import Way, curvature_at, tangent_at
 from nccompile.kernels import curves as kernels
 from nccompile.kernels.distance import place_on
-from nccompile.passes.base import Context, Pass, Report
+from nccompile.passes.base import Context, Pass, Report, gather
 from nccompile.toolpath.columns import Curves, EventKind, Events, Floats, Kind, Mark, Plane, Toolpath
 from nccompile.toolpath.lengths import THIRD_AXIS, path_lengths
 from nccompile.toolpath.verify import verify_chain
@@ -156,10 +157,22 @@ class Probe:
         return slant * slant * np.array(curvature_at(self.kind, self.plane, self.p, self._u(s)))
 
 
+@contextmanager
+def windows(least: int) -> Iterator[None]:
+    """Passes look at windows of at least this many rows, 0: as ever; so short paths have many windows, too."""
+    before = gather.__defaults__
+    gather.__defaults__ = (least,) if least else before
+    try:
+        yield
+    finally:
+        gather.__defaults__ = before
+
+
 def run(p: Pass, path: Toolpath, size: int = 0) -> tuple[Toolpath, Report]:
-    """A pass over a path cut in chunks of `size` (0: one chunk); the result is verified."""
+    """A pass over a path cut in chunks of `size`, which are its windows (0: one chunk); the result is verified."""
     report = Report(p.name)
-    out = list(verify_chain(p.apply(cut(path, size), Context(report))))
+    with windows(size):
+        out = list(verify_chain(p.apply(cut(path, size), Context(report))))
     return Toolpath.join(out), report
 
 
