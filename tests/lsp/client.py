@@ -39,6 +39,7 @@ class Client:
         self.incoming: queue.Queue[Json] = queue.Queue()
         self.notifications: list[Json] = []
         self.answers: dict[int, Json] = {}
+        self.asked: dict[int, str] = {}
         self.versions: dict[str, int] = {}
         self.texts: dict[str, str] = {}
         self.last_id = 0
@@ -93,6 +94,7 @@ class Client:
 
     def start(self, method: str, params: Any) -> int:
         self.last_id += 1
+        self.asked[self.last_id] = method
         self.send({"id": self.last_id, "method": method, "params": params})
         return self.last_id
 
@@ -130,7 +132,8 @@ class Client:
                     continue
                 if code is not None:
                     self._listener.join(PATIENCE)
-                state = "keeps silent" if code is None else f"ended with code {code}"
+                open_ones = [f"{n} {m}" for n, m in self.asked.items() if n not in self.answers]
+                state = f"keeps silent of {open_ones}" if code is None else f"ended with code {code}"
                 raise AssertionError(f"the server {state}: {''.join(self.said)}") from None
 
     def open(self, uri: str, text: str) -> None:
