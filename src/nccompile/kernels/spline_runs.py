@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
-from nccompile.kernels.fit_splines import HELD, LED, fit_spline
+from nccompile.kernels.fit_splines import fit_spline
 from nccompile.kernels.spline_joints import AROUND, chord_direction, joint_state
+from nccompile.kernels.spline_windows import HELD, LED
 
 __all__ = ["CORNER", "JOINT", "LENGTHS", "fit_splines"]
 
