@@ -75,7 +75,7 @@ def test_there_and_back_again_on_the_same_path(planner: str) -> None:
     assert np.array_equal(both.outputs.set_position, path.target[-1])
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(paths(stops=False, most=6), st.sampled_from(PLANNERS))
 def test_the_backward_path_of_the_backward_path_is_the_path(path: Toolpath, planner: str) -> None:
     there = planned(path, planner)
@@ -109,7 +109,7 @@ CHANGES = st.lists(
 )
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(paths(stops=False, most=8), st.sampled_from(PLANNERS), CHANGES)
 def test_axes_keep_their_limits(path: Toolpath, planner: str, changes: list[tuple[int, float]]) -> None:
     axes = default_machine().axes
@@ -126,7 +126,7 @@ def test_axes_keep_their_limits(path: Toolpath, planner: str, changes: list[tupl
         assert dv <= 1.05 * axis.acceleration * CYCLE + axis.velocity_step + 1e-6 * axis.velocity
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(plans(), CHANGES)
 def test_the_path_keeps_its_jerk(path: Toolpath, changes: list[tuple[int, float]]) -> None:
     both = Interpolator2Dir(path, CYCLE)

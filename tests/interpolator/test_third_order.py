@@ -8,6 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nccompile.backend.samples import sample
+from nccompile.kernels.interpolator_rate import plan_time, rate_at
+from nccompile.kernels.interpolator_stop import brake_phases, cube_root, step_phases
 from nccompile.runtime.interpolator import Interpolator
 from nccompile.runtime.ring import RingBuffer
 from nccompile.toolpath.columns import Floats, Toolpath
@@ -61,7 +63,7 @@ def assert_inside(ways: Floats, cycle: float, top: float = TOP) -> None:
     assert np.abs(j).max() <= JERK * SLACK + rounding
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(plans(), st.sampled_from([1e-3, 1e-4, 7e-3]))
 def test_samples_are_the_plan(path: Toolpath, cycle: float) -> None:
     blocks = list(sample([path], cycle))
@@ -81,8 +83,8 @@ def test_samples_are_the_plan(path: Toolpath, cycle: float) -> None:
     )
 
 
-@settings(max_examples=60, deadline=None)
-@given(plans(), SCRIPTS, st.sampled_from([1e-3, 1e-3, 1e-4]))
+@settings(max_examples=10, deadline=None)
+@given(plans(), SCRIPTS, st.sampled_from([1e-3, 1e-3, 1e-3, 1e-4]))
 def test_stops_and_overrides_stay_inside_from_any_state(
     path: Toolpath, script: list[tuple[int, tuple[str, float]]], cycle: float
 ) -> None:
@@ -92,3 +94,98 @@ def test_stops_and_overrides_stay_inside_from_any_state(
     assert ipo.outputs.done
     assert ways.sum() == pytest.approx(path.length.sum(), abs=1e-9)
     assert np.array_equal(ipo.outputs.set_position, path.end)
+
+
+@settings(max_examples=8, deadline=None)
+@given(plans(), SCRIPTS, st.integers(2, 700))
+def test_the_size_of_bursts_changes_no_bit(
+    path: Toolpath, script: list[tuple[int, tuple[str, float]]], burst: int
+) -> None:
+    times = sorted({0, *(at for at, _ in script), 1500})
+    single = run(block(path, 1e-3), script, 4000, 1500)
+    ipo = block(path, 1e-3)
+    ways: list[Floats] = []
+    for begin, end in zip(times, [*times[1:], 4000], strict=True):
+        for at, (name, value) in script:
+            if at == begin and at < 1500:
+                setattr(ipo.inputs, name, value)
+        if begin == 1500:
+            inputs = ipo.inputs
+            inputs.slow_stop = inputs.quick_stop = inputs.single_step = False
+            inputs.override = 1.0
+        left = end - begin
+        while left and not ipo.outputs.done:
+            done = ipo.advance(min(burst, left), patient=False)
+            ways.append(done.velocity * 1e-3)
+            left -= len(done)
+    assert np.array_equal(np.concatenate(ways), single)
+
+
+@settings(max_examples=8, deadline=None)
+@given(plans(), st.lists(st.integers(0, 250), min_size=1, max_size=30), st.sampled_from([1.0, 0.5, 1.4]))
+def test_missing_rows_brake_inside_the_limits(path: Toolpath, waits: list[int], override: float) -> None:
+    ring = RingBuffer(path.axes, len(path))
+    ipo = Interpolator(ring, path.start, 1e-3)
+    ipo.inputs.override = override
+    ways: list[float] = []
+    at = 0
+    for wait in [0, *waits]:
+        at += ring.push(path, at, max(1, len(path) // 8)) if at < len(path) else 0
+        for _ in range(wait):
+            ways += (ipo.advance(1, patient=False).velocity * 1e-3).tolist()
+    at += ring.push(path, at) if at < len(path) else 0
+    ring.close()
+    while not ipo.outputs.done:
+        ways += (ipo.advance(1, patient=False).velocity * 1e-3).tolist()
+    assert at == len(path)
+    assert_inside(np.array(ways), 1e-3)
+    assert sum(ways) == pytest.approx(path.length.sum(), abs=1e-9)
+
+
+@given(st.floats(0.0, 150.0), st.floats(-900.0, 700.0), st.floats(100.0, 1000.0), st.floats(1e3, 1e5))
+def test_a_stop_ends_at_rest_without_acceleration(v: float, a: float, decel: float, jerk: float) -> None:
+    possible, t1, j1, t2, t3 = brake_phases(v, a, decel, jerk)
+    assert possible or a < 0.0
+    if not possible:
+        return
+    least = a
+    for t, j in ((t1, j1), (t2, 0.0), (t3, jerk)):
+        assert t >= 0.0
+        v, a = v + t * (a + 0.5 * t * j), a + t * j
+        least = min(least, a)
+        assert v >= -1e-7
+    assert (v, a) == pytest.approx((0.0, 0.0), abs=1e-4)
+    assert abs(j1) <= jerk
+    assert -least <= max(decel, 900.0) * SLACK
+
+
+@given(st.floats(1e-4, 500.0), st.floats(0.1, 150.0), st.floats(100.0, 2000.0), st.floats(1e3, 1e5))
+def test_a_single_step_covers_its_length_inside_its_limits(
+    length: float, top: float, accel: float, jerk: float
+) -> None:
+    j, ramp, hold, cruise = step_phases(length, top, accel, jerk)
+    assert min(ramp, hold, cruise) >= 0.0
+    assert j * ramp <= accel * SLACK
+    peak = j * ramp * (ramp + hold)
+    assert peak <= top * SLACK
+    assert peak * (2 * ramp + hold + cruise) == pytest.approx(length, rel=1e-9)
+    assert peak == pytest.approx(top) or cruise == 0.0
+
+
+@given(st.floats(0.0, 2.0), st.floats(-1.0, 1.0), st.floats(1e-3, 0.5), st.floats(0.0, 0.5))
+def test_a_change_of_the_rate_is_smooth_and_its_time_the_integral(
+    r0: float, dr: float, ramp: float, level: float
+) -> None:
+    t = np.linspace(0.0, 2.2 * ramp + level, 401)
+    rate = np.array([rate_at(x, r0, dr, ramp, level) for x in t])
+    passed = np.array([plan_time(x, r0, dr, ramp, level) for x in t])
+    step = t[1]
+    assert rate[-1] == pytest.approx((r0 + dr, 0.0, 0.0), abs=1e-12)
+    assert np.abs(np.diff(rate[:, 1])).max() <= abs(dr) / ((ramp + level) * ramp) * step * (1 + 1e-6) + 1e-12
+    integral = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:, 0] + rate[:-1, 0])) * step])
+    assert passed == pytest.approx(integral, abs=1e-4 * (t[-1] + 1.0))
+
+
+@given(st.floats(1e-12, 1e12))
+def test_the_cube_root_is_one(x: float) -> None:
+    assert cube_root(x) == pytest.approx(x ** (1 / 3), rel=1e-12)

@@ -123,6 +123,12 @@ def set_off(rows: Rows, inputs: Inputs, tail: int, complete: int, f: Floats, i: 
         if found == FITS:
             _take_table(0.0, 0.0, GO, f, i)
         return found
+    if complete == 0 and inputs.patient == 0 and rows.v_end[row] > 0.0:
+        # Not before the path could be stopped again behind this row within the rows at hand.
+        length, v, a = rows.length[row], rows.v_end[row], rows.a_end[row]
+        if plan_stop(rows, row, length, v, a, SLOW, 0.0, 0.0, tail, f, i) == OPEN:
+            i[STARVED] = 1
+            return OPEN
     wanted = min(inputs.override, 1.0)
     begin_planned(rows, row, f[S], f, i)
     if f[V] == 0.0 and f[A] == 0.0:  # the plan rests here too
