@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from nccompile.machine.model import default_machine
 from nccompile.passes.velocity import PLANNERS, PlanSettings
-from nccompile.toolpath.columns import Toolpath
+from nccompile.toolpath.columns import Kind, Toolpath
 from tests.velocity.must_hold import NEVER_SLOWER, broken_limits, off_the_path, times_by_window
-from tests.velocity.random_paths import cut, paths
+from tests.velocity.random_paths import Builder, cut, paths
 
 AXES = ("X", "Y", "Z", "A")
 GENERIC = {name: PlanSettings.from_machine(default_machine(), AXES, planner=name) for name in PLANNERS}
@@ -53,3 +53,15 @@ def test_a_larger_window_is_never_slower(planner: str, path: Toolpath, size: int
 @given(path=brisk(6, stops=False))
 def test_set_positions_lie_on_the_path(planner: str, path: Toolpath) -> None:
     assert off_the_path(path, GENERIC[planner], 1e-3) < 1e-9
+
+
+@pytest.mark.parametrize("planner", PLANNERS)
+def test_blocks_without_a_way_and_dwells_between_motions(planner: str) -> None:
+    build = Builder()
+    for turn in (0.0, 0.05, 0.0):
+        build.line(10.0, turn, 150.0, 1000.0, 1000.0)
+        build.line(0.0, 0.0, 150.0, 1000.0, 1000.0)  # passed through at full velocity
+        build.line(0.02, 0.0, 150.0, 1000.0, 1000.0)
+    build.still(Kind.DWELL, seconds=0.5)
+    build.line(10.0, 0.0, 150.0, 1000.0, 1000.0)
+    assert broken_limits([build.path()], GENERIC[planner], 1e-3) == []

@@ -237,5 +237,5 @@ def _cut(path: Toolpath, jerk: Floats, plan: _Plan) -> Toolpath:
     return out.replace(
         v_end=np.where(last >= 0, v_end[last], 0.0),
         a_end=np.where(last >= 0, a_end[last], 0.0),
-        jerk=np.where(out.length > 0.0, jerk[row], 0.0),  # a dwell is run by its time
+        jerk=np.where(out.kind < Kind.SET_POSITION, jerk[row], 0.0),  # a dwell is run by its time
     )
