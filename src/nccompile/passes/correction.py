@@ -178,7 +178,9 @@ def emit(path: Toolpath, moving: Moving, offsets: Offsets, count: int, style: St
     return out
 
 
-def build(path: Toolpath, count: int, emitted: Emitted, offsets: Offsets, clear: int) -> Toolpath:
+def build(
+    path: Toolpath, count: int, moving: Moving, emitted: Emitted, offsets: Offsets, clear: int
+) -> Toolpath:
     """The new rows as a chunk; clear: marks that have been carried out."""
     source = path.rows(0, count)
     origin, part = emitted.origin, emitted.part[:, None]
@@ -196,7 +198,25 @@ def build(path: Toolpath, count: int, emitted: Emitted, offsets: Offsets, clear:
         np.concatenate([source.curves.plane, np.full(len(curved), Plane.XY, np.uint8)]),
         np.concatenate([source.curves.parameters, offsets.table[emitted.piece[curved]]]),
     )
-    row = np.flatnonzero(emitted.flags & LINKED != 0)
-    p0, p1 = emitted.link[row, 0].copy(), emitted.link[row, 1].copy()
-    links = Links(origin[row], p0, p1, row, np.zeros(len(row)), np.ones(len(row)))
+    links = _links(moving, emitted, offsets)
     return compose(source, origin, emitted.kind, target, shape, curves, links, clear=clear)
+
+
+def _links(moving: Moving, emitted: Emitted, offsets: Offsets) -> Links:
+    """Which part of a source row each new row stands for; what is left out goes to the end that is left."""
+    row = np.flatnonzero(emitted.flags & LINKED != 0)
+    origin, p0, p1 = emitted.origin[row], emitted.link[row, 0], emitted.link[row, 1]
+    q0, q1 = np.zeros(len(row)), np.ones(len(row))
+    gone = moving.row[offsets.dropped == 1]
+    if len(gone):
+        cut = row[emitted.piece[row] >= 0]
+        after = np.searchsorted(emitted.origin[cut], gone)
+        following = cut[np.minimum(after, len(cut) - 1)]
+        is_before = (after < len(cut)) & (emitted.contour[following] == moving.of_row[gone])
+        at = np.where(is_before, following, cut[np.maximum(after - 1, 0)])
+        edge = np.where(is_before, 0.0, 1.0)
+        origin, row = np.concatenate([origin, gone]), np.concatenate([row, at])
+        p0, p1 = np.concatenate([p0, np.zeros(len(gone))]), np.concatenate([p1, np.ones(len(gone))])
+        q0, q1 = np.concatenate([q0, edge]), np.concatenate([q1, edge])
+    order = np.lexsort((p0, origin))
+    return Links(origin[order], p0[order], p1[order], row[order], q0[order], q1[order])

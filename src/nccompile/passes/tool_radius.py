@@ -165,13 +165,13 @@ class ToolRadius(Pass):
             _measure(moving, offsets, emitted, depth, context)
         cut = loops[emitted.origin]
         bad = np.unique(emitted.contour[cut & (depth > 0.0)])
-        findings = [(build(path, count, emitted, offsets, _CLEAR), depth, where, cut)]
+        findings = [(build(path, count, moving, emitted, offsets, _CLEAR), depth, where, cut)]
         if len(bad):
             if shorten(offsets, moving, emitted, gouges, bad, loops):
                 emitted = emit(path, moving, offsets, count, style)
                 depth, where = gouges.of_emitted(emitted, offsets)
                 cut = loops[emitted.origin]
-            out = build(path, count, emitted, offsets, _CLEAR)
+            out = build(path, count, moving, emitted, offsets, _CLEAR)
             left, where = left_over(out, emitted, offsets, gouges, cut, depth, where)
             findings.append((out, np.where(cut, left, 0.0), where, np.zeros(len(out), np.bool_)))
         said: set[int] = set()
