@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 
 from nccompile.backend import ncq
-from nccompile.errors import UsageError
+from nccompile.errors import InvalidToolpath, UsageError
 from nccompile.toolpath import Toolpath
+from nccompile.toolpath.text import format_toolpath, parse_toolpath
+from nccompile.toolpath.verify import verify
 from tests.backend.paths import PROVENANCE, planned, same, small
+from tests.interpolator.third_order import levels, plan_of
 
 
 def _write(path: Path, *chunks: Toolpath) -> ncq.Meta:
@@ -126,3 +129,16 @@ def test_only_planned_paths_are_written(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="planned"):
         _write(tmp_path / "part.ncq", small().replace(v_end=None))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_third_order_plan_keeps_its_columns(tmp_path: Path) -> None:
+    path = plan_of(levels([50.0, 20.0], [0.1, 0.1]), 2)
+    verify(path)
+    place = tmp_path / "part.ncq"
+    _write(place, path.rows(0, 5), path.rows(5, len(path)))
+    queue = ncq.read(place).check()
+    assert queue.meta.third_order
+    assert same(Toolpath.join(list(queue.chunks())), path)
+    assert same(parse_toolpath(format_toolpath(path)), path)
+    with pytest.raises(InvalidToolpath, match="v_end is not where the jerk leads to"):
+        verify(path.replace(a_end=path.a_end * 0.9))
