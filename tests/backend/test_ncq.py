@@ -140,5 +140,6 @@ def test_a_third_order_plan_keeps_its_columns(tmp_path: Path) -> None:
     assert queue.meta.third_order
     assert same(Toolpath.join(list(queue.chunks())), path)
     assert same(parse_toolpath(format_toolpath(path)), path)
+    assert path.a_end is not None
     with pytest.raises(InvalidToolpath, match="v_end is not where the jerk leads to"):
         verify(path.replace(a_end=path.a_end * 0.9))

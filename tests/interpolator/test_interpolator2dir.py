@@ -56,10 +56,10 @@ def test_there_and_back_again_on_the_same_path(planner: str) -> None:
     path = winding(planner)
     both = Interpolator2Dir(path, CYCLE)
     there = advance(both, 600)
-    assert both.direction is Direction.POSITIVE
+    directions = [both.direction]
     both.inputs.override = -0.7
     back = advance(both, 100)
-    assert both.direction is Direction.NEGATIVE
+    assert [*directions, both.direction] == [Direction.POSITIVE, Direction.NEGATIVE]
     back = np.vstack([back, advance(both, 4000)])
     assert both.at_start
     assert both.direction is Direction.STANDSTILL
@@ -97,6 +97,7 @@ def test_the_backward_path_of_the_backward_path_is_the_path(path: Toolpath, plan
         assert np.array_equal(getattr(again, name), getattr(there, name)), name
     assert np.allclose(again.target, there.target, atol=1e-12)
     if there.a_end is not None:
+        assert again.a_end is not None
         assert np.array_equal(again.a_end, there.a_end)
     times = [sum(len(b.t) for b in sample([chunk], CYCLE)) for chunk in (there, back)]
     assert abs(times[0] - times[1]) <= 1

@@ -71,6 +71,8 @@ def test_samples_are_the_plan(path: Toolpath, cycle: float) -> None:
     assert_inside(ways, cycle, 100.0)
     assert blocks[-1].position[-1] == pytest.approx(path.end, abs=1e-12)
     # the way over time, by integrating the plan's accelerations finely
+    assert path.v_end is not None
+    assert path.a_end is not None
     begin = np.concatenate([[0.0], path.v_end[:-1]])
     before = np.concatenate([[0.0], path.a_end[:-1]])
     mean = 0.5 * (begin + path.v_end)

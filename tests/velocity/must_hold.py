@@ -91,7 +91,8 @@ def broken_limits(path: Sequence[Toolpath], settings: PlanSettings, cycle: float
 def _jumps(path: Sequence[Toolpath], block: SampleBlock) -> npt.NDArray[np.bool_]:
     """Between which set positions a G92 moved the coordinates; source lines ascend."""
     lines = np.concatenate([chunk.line[chunk.kind == Kind.SET_POSITION] for chunk in path])
-    return np.diff(np.searchsorted(lines, block.line, side="right")) != 0
+    jumped: npt.NDArray[np.bool_] = np.diff(np.searchsorted(lines, block.line, side="right")) != 0
+    return jumped
 
 
 def off_the_path(path: Toolpath, settings: PlanSettings, cycle: float) -> float:

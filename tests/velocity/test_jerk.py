@@ -129,7 +129,7 @@ def reference(given_rows: Rows, cells: int) -> float:
     second = (np.eye(n, n, 1) - 2.0 * np.eye(n) + np.eye(n, n, -1)) / step**2
     v = top
     for _ in range(20):
-        found = linprog(  # type: ignore[call-overload]
+        found = linprog(
             -1.0 / v**3, A_ub=np.vstack([first, -first, second, -second]),
             b_ub=np.concatenate([np.full(2 * n + 2, 2.0 * a), 2.0 * j / v, 2.0 * j / v]),
             bounds=np.column_stack([np.zeros(n), top**2]), method="highs",
