@@ -6,9 +6,23 @@ NccompileError
 +-- QueueError            a file that is not a sound OutQueue (exit code 2)
 +-- RuntimeFault          the cyclic task or a drive had to stop (exit code 1)
 +-- InvalidToolpath       our own bug: an invariant of the toolpath does not hold (exit code 3)
+
+Cancelled                 no error: whoever asked for the work does not want it any more
 """
 
-__all__ = ["InvalidToolpath", "MachineError", "NccompileError", "QueueError", "RuntimeFault", "UsageError"]
+__all__ = [
+    "Cancelled",
+    "InvalidToolpath",
+    "MachineError",
+    "NccompileError",
+    "QueueError",
+    "RuntimeFault",
+    "UsageError",
+]
+
+
+class Cancelled(Exception):
+    """Whoever asked for the work does not want it any more."""
 
 
 class NccompileError(Exception):

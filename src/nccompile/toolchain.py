@@ -89,8 +89,10 @@ class JobTime:
 class Compilation:
     """One program on its way through the stages; `diagnostics` and `time` fill while its chunks are pulled."""
 
-    def __init__(self, source: Source, options: Options) -> None:
+    def __init__(self, source: Source, options: Options, wanted: Callable[[], bool] | None = None) -> None:
+        """`wanted` is asked between jumps of the program; if it says no, decoding ends with `Cancelled`."""
         self.source = source
+        self._wanted = wanted
         self.options = options
         self.diagnostics = Diagnostics()
         self.time = JobTime()
@@ -161,7 +163,7 @@ class Compilation:
         )
 
     def _program(self) -> Decoded:
-        return decode(self.source, self.options.decoder, self.diagnostics)
+        return decode(self.source, self.options.decoder, self.diagnostics, self._wanted)
 
     def _verified(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
         return verify_chain(chunks) if self.options.verify else iter(chunks)

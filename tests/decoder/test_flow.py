@@ -4,6 +4,12 @@ from __future__ import annotations
 
 import time
 
+import pytest
+
+from nccompile.decoder import DecodeOptions, decode
+from nccompile.diagnostics import Diagnostics
+from nccompile.errors import Cancelled
+from nccompile.source import Source
 from tests.decoder.decoding import codes_of, path_of, read, targets
 
 
@@ -91,3 +97,19 @@ def test_the_implicit_variable_is_an_int() -> None:
 
 def test_huge_block_numbers_are_no_targets_but_do_no_harm() -> None:
     assert codes_of(f"N{'9' * 400} G1 X1 F10", "N20 G20 L20 K0") == []
+
+
+def test_a_loop_that_nobody_waits_for_is_given_up() -> None:
+    source = Source.from_bytes("loop.nc", b"%\nN5 G36 O$n$ D1\nN10 G37 O$n$ D1\nN20 G20 L10 K1\n")
+    left = 3
+
+    def wanted() -> bool:
+        nonlocal left
+        left -= 1
+        return left > 0
+
+    diagnostics = Diagnostics()
+    with pytest.raises(Cancelled):
+        list(decode(source, DecodeOptions(), diagnostics, wanted))
+    assert left == 0
+    assert not diagnostics.errors

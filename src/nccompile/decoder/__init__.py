@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from nccompile.decoder.din66025 import Din66025
 from nccompile.decoder.options import DecodeOptions
@@ -35,9 +35,20 @@ class Decoded:
         return self._chunks
 
 
-def decode(source: Source, options: DecodeOptions, diagnostics: Diagnostics) -> Decoded:
-    """Starts decoding a DIN 66025 program; memory is that of a chunk, or of the blocks if there are jumps."""
+def decode(
+    source: Source,
+    options: DecodeOptions,
+    diagnostics: Diagnostics,
+    wanted: Callable[[], bool] | None = None,
+) -> Decoded:
+    """Starts decoding a DIN 66025 program; memory is that of a chunk, or of the blocks if there are jumps.
+
+    wanted: asked now and then in a program with jumps, which may run long without a chunk; if it says no,
+    iterating raises `Cancelled`.
+    """
     if isinstance(source, LargeSource):
         expect_work(LARGE)
     header = read_header(source)
-    return Decoded(Din66025(source, options, diagnostics), "" if header is None else header.name)
+    return Decoded(
+        Din66025(source, options, diagnostics, wanted=wanted), "" if header is None else header.name
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Set
+from collections.abc import Callable, Iterator, Set
 from contextlib import closing
 
 from nccompile.decoder.columnar import Runs
@@ -54,6 +54,7 @@ class Din66025:
         diagnostics: Diagnostics,
         *,
         columnar: bool | None = None,
+        wanted: Callable[[], bool] | None = None,
     ) -> None:
         """`columnar`: whether runs of plain blocks are decoded as columns; None: if the source is large."""
         self._source, self._diagnostics = source, diagnostics
@@ -70,6 +71,7 @@ class Din66025:
         self._core = Core(source, self.axes, options, diagnostics, jumps)
         self._jumps = jumps
         self._flow: Flow | None = None
+        self._wanted = wanted
         self._motion = Motion(self._core)
         self._skip = options.skip_blocks
 
@@ -101,14 +103,14 @@ class Din66025:
         if not self._jumps:
             yield from blocks
             return
-        self._flow = Flow(self._core, Listed(blocks))
+        self._flow = Flow(self._core, Listed(blocks), self._wanted)
         while (block := self._flow.next()) is not None:
             yield block
 
     def _jumping_columns(self, source: LargeSource) -> Iterator[Toolpath]:
         path, runs = self._core.path, Runs(self._core, self._motion)
         program = Scanned(tables(source), Reader(source, self._diagnostics))
-        flow = self._flow = Flow(self._core, program)
+        flow = self._flow = Flow(self._core, program, self._wanted)
         while not flow.has_ended:
             table, row = program.place(flow.at)
             stop = runs.run(table, row, flow.left)

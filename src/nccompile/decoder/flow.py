@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from nccompile.decoder.core import Core
 from nccompile.decoder.program import Program
+from nccompile.errors import Cancelled
 from nccompile.parser import Block
 from nccompile.source import Span
 
@@ -16,8 +19,10 @@ class Flow:
     at: index of the next block;  left: how many more may run before the program is stopped.
     """
 
-    def __init__(self, core: Core, program: Program) -> None:
+    def __init__(self, core: Core, program: Program, wanted: Callable[[], bool] | None = None) -> None:
+        """`wanted` is asked at every jump that is taken, which raises `Cancelled` if it says no."""
         self._core = core
+        self._wanted = wanted
         self._program = program
         self.at = 0
         self.left = core.options.max_blocks
@@ -54,6 +59,8 @@ class Flow:
             return
         if not is_taken:
             return
+        if self._wanted is not None and not self._wanted():
+            raise Cancelled
         here = self.at - 1
         version = self._core.variables.version
         self._taken += 1

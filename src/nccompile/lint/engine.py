@@ -8,10 +8,11 @@ from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from nccompile.diagnostics import Diagnostic, Diagnostics, Severity
+from nccompile.errors import Cancelled
 from nccompile.lint.base import Fix, Rule
 from nccompile.lint.config import Config
 from nccompile.lint.ignores import Ignores
-from nccompile.lint.program import Cancelled, Program, prepare
+from nccompile.lint.program import Program, prepare
 from nccompile.lint.registry import RULES
 from nccompile.lint.remedies import remedy
 from nccompile.source import Source

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from nccompile.decoder.tables import INSTRUCTIONS, Group
 from nccompile.diagnostics import Diagnostics
+from nccompile.errors import Cancelled
 from nccompile.lint.config import Config
 from nccompile.machine.model import Machine
 from nccompile.parser import MAX_LINE, Block, Header, ReadSource, Word, parse, read_header, read_line
@@ -21,7 +22,7 @@ from nccompile.source import STREAMED, LargeSource, Source
 from nccompile.toolchain import Compilation, Options
 from nccompile.toolpath import Toolpath
 
-__all__ = ["LINE_FEED", "Cancelled", "Occurrence", "Program", "first", "prepare"]
+__all__ = ["LINE_FEED", "Occurrence", "Program", "first", "prepare"]
 
 Bytes: TypeAlias = npt.NDArray[np.uint8]
 Flags: TypeAlias = npt.NDArray[np.bool_]
@@ -30,10 +31,6 @@ LINE_FEED = 10
 
 Occurrence = tuple[int, Word]
 """A word with the index of its block."""
-
-
-class Cancelled(Exception):
-    """Whoever asked for the analysis does not want it any more."""
 
 
 _MARKS = ("\ufeff", "\xff\xfe", "\xfe\xff")
@@ -189,7 +186,7 @@ def prepare(
     if not isinstance(source, ReadSource):
         nodes = [read_line(at, text) for at, text in enumerate(source.lines, 1)]
         source = ReadSource(source.name, source.text, source.sha256, nodes)
-    compilation = Compilation(_decodable(source), options)
+    compilation = Compilation(_decodable(source), options, wanted)
     if limit is not None:
         compilation.diagnostics.limit = limit
     blocks = list(parse(source, Diagnostics()))

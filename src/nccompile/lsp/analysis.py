@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.decoder import DecodeOptions
-from nccompile.errors import NccompileError
+from nccompile.errors import Cancelled, NccompileError
 from nccompile.lint.config import Config
 from nccompile.lint.engine import Report, lint
-from nccompile.lint.program import Cancelled, Program
+from nccompile.lint.program import Program
 from nccompile.machine.model import Machine
 from nccompile.parser import ReadSource
 from nccompile.passes.velocity import row_times
@@ -110,7 +110,7 @@ def timed(analysis: Analysis, wanted: Callable[[], bool]) -> Times | None:
     """The times of a checked program; None if it has errors or cannot be planned.  Raises Cancelled."""
     if not analysis.is_sound or not analysis.program.chunks:
         return None
-    compilation = Compilation(analysis.program.source, analysis.settings.options)
+    compilation = Compilation(analysis.program.source, analysis.settings.options, wanted)
     seconds, lines = [], []
     velocity = 0.0
     try:

@@ -4,7 +4,7 @@
       └────> after a pause: findings of the whole text   ──> published, `nccompile/checked`
                 └────> times of the path                  ──> hints and lenses
 
-The analysis of a version that was edited meanwhile is given up at the next chunk of its toolpath.
+The analysis of a version that was edited meanwhile is given up at the next chunk of its toolpath, or among its jumps.
 """
 
 from __future__ import annotations
@@ -15,9 +15,8 @@ import logging
 import time
 from collections.abc import Callable
 
-from nccompile.errors import NccompileError
+from nccompile.errors import Cancelled, NccompileError
 from nccompile.lint.config import Config, config_for
-from nccompile.lint.program import Cancelled
 from nccompile.lsp.analysis import Analysis, Settings, Times, analyse, timed
 from nccompile.lsp.document import Document, Snapshot
 from nccompile.lsp.threads import Worker
