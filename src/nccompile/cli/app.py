@@ -170,6 +170,7 @@ def _close_stdout(code: int) -> int:
         _forget_stdout()
     except OSError as error:
         _say(f"error: standard output cannot be written: {error.strerror or error}")
+        _forget_stdout()
         return 2
     return code
 
