@@ -7,8 +7,13 @@ a change and not chance makes a test fail.  NCCOMPILE_EXPLORE=1 takes new exampl
 from __future__ import annotations
 
 import os
+import signal
 
 from hypothesis import settings
+
+# A test run in the background of a script starts with interrupts ignored, and so would the commands it interrupts.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.register_profile("explore", deadline=None)

@@ -64,9 +64,12 @@ def test_progress_is_shown_on_a_terminal_only(program: Path, tmp_path: Path) -> 
         except OSError:  # Linux reports the end of a terminal so
             return
 
-    listener = threading.Thread(target=listen)
+    large = tmp_path / "large.nc"
+    head, rows = program.read_text().split("\n", 1)
+    large.write_text("\n".join([head, rows, rows, rows]))  # a short compilation shows nothing
+    listener = threading.Thread(target=listen, daemon=True)
     listener.start()
-    subprocess.run([*COMMAND, str(program), "-o", str(tmp_path / "b.ncq")], check=True, stderr=end)
+    subprocess.run([*COMMAND, str(large), "-o", str(tmp_path / "b.ncq")], check=True, stderr=end)
     os.close(end)
     listener.join(10)
     assert b"%" in b"".join(seen)

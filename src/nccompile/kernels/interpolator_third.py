@@ -184,8 +184,9 @@ def command_third(rows: Rows, inputs: Inputs, tail: int, complete: int, f: Float
             _take_table(v, a, stop, f, i)
         return OPEN if found == OPEN and complete == 0 else FITS
     if complete == 0 and inputs.patient == 0 and v > 0.0:
-        reserve = (v + max(a, 0.0) * inputs.cycle) * inputs.cycle * 2.0
-        if plan_stop(rows, row, f[S], v, a, SLOW, 0.0, reserve, tail, f, i) == OPEN and (
+        v_next, a_next = _next_at_most(rows, row, f[S], v, a, inputs.cycle, tail)
+        reserve = v_next * inputs.cycle
+        if plan_stop(rows, row, f[S], v_next, a_next, SLOW, 0.0, reserve, tail, f, i) == OPEN and (
             plan_stop(rows, row, f[S], v, a, SLOW, 0.0, 0.0, tail, f, i) == FITS
         ):
             i[STARVED] = 1
@@ -194,6 +195,22 @@ def command_third(rows: Rows, inputs: Inputs, tail: int, complete: int, f: Float
     if f[RATE_TIME] >= 0.0:
         return FITS
     return _choose_rate(rows, inputs, tail, complete, f, i)
+
+
+@kernel
+def _next_at_most(
+    rows: Rows, row: int, s: float, v: float, a: float, cycle: float, tail: int
+) -> tuple[float, float]:
+    """Velocity and acceleration that a cycle from path length s of a row on cannot exceed."""
+    jerk, left = rows.jerk[row], rows.length[row] - s
+    while True:
+        a_next = a + jerk * cycle
+        v_next = v + max(a_next, 0.0) * cycle
+        if left >= v_next * cycle or row + 1 >= tail:
+            return v_next, a_next
+        row += 1
+        left += rows.length[row]
+        jerk = max(jerk, rows.jerk[row])
 
 
 @kernel
