@@ -11,7 +11,7 @@ from typing import BinaryIO
 
 from nccompile.errors import UsageError
 
-__all__ = ["replacing"]
+__all__ = ["replacing", "write_file"]
 
 _BUFFER = 1 << 20
 
@@ -47,6 +47,13 @@ def replacing(path: Path) -> Iterator[tuple[BinaryIO, Callable[[], None]]]:
     finally:
         if not committed:
             _discard(file, part)
+
+
+def write_file(path: Path, content: bytes) -> None:
+    """Writes a whole file; raises UsageError if it cannot be written."""
+    with replacing(path) as (file, commit):
+        file.write(content)
+        commit()
 
 
 def _discard(file: BinaryIO | None, part: Path) -> None:

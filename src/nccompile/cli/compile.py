@@ -100,7 +100,7 @@ def _summary(meta: Meta, compilation: Compilation, place: Path) -> str:
 
 
 def _write_report(path: Path, compilation: Compilation, meta: Meta | None, place: Path) -> None:
-    from nccompile.backend.files import replacing
+    from nccompile.cli.outputs import write_json
     from nccompile.diagnostics import to_json
     from nccompile.source import shown_path
 
@@ -114,6 +114,4 @@ def _write_report(path: Path, compilation: Compilation, meta: Meta | None, place
         "queue": None if meta is None else meta.as_dict(),
         "velocity": None if compilation.time.losses is None else compilation.time.losses.as_dict(),
     }
-    with replacing(path) as (file, commit):
-        file.write((json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
-        commit()
+    write_json(path, content)

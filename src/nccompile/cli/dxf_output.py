@@ -17,6 +17,7 @@ from nccompile.backend.din66025 import ProgramFormat, program_text
 from nccompile.backend.files import replacing
 from nccompile.cli.inputs import ProgramOptions, machine_of
 from nccompile.cli.options import Report
+from nccompile.cli.outputs import require_picture, write_json
 from nccompile.cli.report import report as show
 from nccompile.diagnostics import Diagnostics, to_json
 from nccompile.errors import UsageError
@@ -34,8 +35,6 @@ __all__ = ["Import", "run"]
 
 LONG = 1_000_000
 """Size [bytes] of drawings that get a progress display."""
-
-PICTURES = (".png", ".svg", ".pdf")
 
 Say = Callable[[str], None]
 
@@ -60,8 +59,8 @@ class Import:
 def run(wanted: Import, job: Job, reading: ReadOptions, converting: ConvertOptions, form: Report) -> None:
     """Imports the drawing; no program is left behind if there are errors."""
     found = Diagnostics()
-    if wanted.preview is not None and wanted.preview.suffix.lower() not in PICTURES:
-        raise UsageError(f"{wanted.preview}: pictures are written as {', '.join(PICTURES)}")
+    if wanted.preview is not None:
+        require_picture(wanted.preview)
     if not wanted.drawing.is_file():
         what = "is not a file" if wanted.drawing.exists() else "is not there"
         raise UsageError(f"{wanted.drawing} {what}")
@@ -205,6 +204,4 @@ def _write_report(wanted: Import, drawing: Drawing | None, result: Result, found
         }
     content["diagnostics"] = json.loads(to_json(found))
     assert wanted.report is not None
-    with replacing(wanted.report) as (file, commit):
-        file.write((json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
-        commit()
+    write_json(wanted.report, content)

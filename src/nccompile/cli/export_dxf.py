@@ -31,7 +31,7 @@ def export_dxf(
     the passes changed it.
     """
     from nccompile.backend.dxf import DxfExport
-    from nccompile.backend.files import replacing
+    from nccompile.backend.files import write_file
     from nccompile.cli.dxf_stages import stages
     from nccompile.cli.outputs import keep_apart, output_of
 
@@ -44,7 +44,5 @@ def export_dxf(
     )
     text = io.StringIO()
     drawing.write(text)
-    with replacing(place) as (file, commit):
-        file.write(text.getvalue().encode("utf-8", "surrogateescape"))
-        commit()
+    write_file(place, text.getvalue().encode("utf-8", "surrogateescape"))
     print(f"{place}: {count} entities")

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from itertools import combinations
 from pathlib import Path
+from typing import Any
 
 from nccompile.cli.queues import STDIN
 from nccompile.errors import UsageError
 
-__all__ = ["keep_apart", "output_of"]
+__all__ = ["keep_apart", "output_of", "require_picture", "write_json"]
+
+PICTURES = (".png", ".svg", ".pdf")
+"""Kinds of pictures that are drawn."""
 
 
 def output_of(path: Path, output: Path | None, suffix: str) -> Path:
@@ -21,6 +26,19 @@ def output_of(path: Path, output: Path | None, suffix: str) -> Path:
     if not path.name:
         raise UsageError(f"{path} cannot be read: Is a directory")
     return path.with_suffix(suffix)
+
+
+def require_picture(path: Path) -> None:
+    """Raises UsageError for a file that is no picture by its name."""
+    if path.suffix.lower() not in PICTURES:
+        raise UsageError(f"{path}: pictures are written as {', '.join(PICTURES)}")
+
+
+def write_json(path: Path, content: dict[str, Any]) -> None:
+    """Writes a report; raises UsageError if it cannot be written."""
+    from nccompile.backend.files import write_file
+
+    write_file(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
 
 
 def keep_apart(inputs: Sequence[Path | None], outputs: Sequence[Path | None]) -> None:

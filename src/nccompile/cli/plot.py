@@ -9,11 +9,9 @@ from typing import Annotated
 import typer
 
 from nccompile.cli.options import DiagnosticsFormat, Input, MachineFile, ProgramOptions, Report
-from nccompile.errors import UsageError
 
 __all__ = ["plot"]
 
-SUFFIXES = (".png", ".svg", ".pdf")
 MOST_SAMPLES = 200_000
 """Cycles that are drawn; a longer job is sampled more coarsely, as the picture has fewer columns anyway."""
 
@@ -32,7 +30,7 @@ def plot(
     """Draw the path, and velocity, acceleration and jerk over time."""
     from nccompile.backend.samples import sample
     from nccompile.cli.inputs import machine_of, open_job, read_program
-    from nccompile.cli.outputs import keep_apart, output_of
+    from nccompile.cli.outputs import keep_apart, output_of, require_picture
     from nccompile.kernels import expect_work
     from nccompile.machine.limits import limits
     from nccompile.passes.velocity import row_times
@@ -43,8 +41,7 @@ def plot(
 
     place = output_of(path, output, ".png")
     keep_apart([path, machine], [place])
-    if place.suffix.lower() not in SUFFIXES:
-        raise UsageError(f"{place}: pictures are written as {', '.join(SUFFIXES)}")
+    require_picture(place)
     axes_of = machine_of(machine)
     job = open_job(path, axes_of, chosen, diagnostics)
     cycle = axes_of.cycle * max(1, ceil(job.job_time / axes_of.cycle / MOST_SAMPLES))

@@ -58,12 +58,10 @@ def require_file(path: Path) -> None:
 
 def store(path: Path, data: bytes, new: bytes) -> None:
     """Writes a changed program back; that of standard input goes to standard output."""
-    from nccompile.backend.files import replacing
+    from nccompile.backend.files import write_file
 
     if path == STDIN:
         sys.stdout.buffer.write(new)
         sys.stdout.flush()
     elif new != data:
-        with replacing(path) as (file, commit):
-            file.write(new)
-            commit()
+        write_file(path, new)

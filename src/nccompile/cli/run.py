@@ -91,6 +91,7 @@ def run_program(
     chosen: ProgramOptions,
 ) -> None:
     """Run an OutQueue or program on virtual drives and print what happened."""
+    from nccompile.backend.files import write_file
     from nccompile.cli.inputs import machine_of, open_job
     from nccompile.cli.outputs import keep_apart
     from nccompile.cli.run_report import finish_run, report_lines
@@ -117,7 +118,7 @@ def run_program(
         else:
             result = CyclicTask(job.chunks(), axes, how, trace=sink).run()
     if report is not None:
-        _write_report(report, result.to_json())
+        write_file(report, result.to_json().encode() + b"\n")
     for line in report_lines(result):
         print(line)
     finish_run(result, diagnostics)
@@ -169,11 +170,3 @@ def _delay(text: str) -> float | None:
     if not 0 <= seconds <= LONGEST_DELAY:
         raise UsageError(f"--m-delay {text}: write seconds from 0 to {LONGEST_DELAY:g}, or '{NEVER}'")
     return seconds
-
-
-def _write_report(path: Path, text: str) -> None:
-    from nccompile.backend.files import replacing
-
-    with replacing(path) as (file, commit):
-        file.write(text.encode() + b"\n")
-        commit()
