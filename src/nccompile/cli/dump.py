@@ -66,12 +66,12 @@ def _chunks(
     path: Path, machine: Machine, options: ProgramOptions, stage: Stage | None, form: Report
 ) -> Iterable[Toolpath]:
     from nccompile.cli.inputs import compiled, open_job
-    from nccompile.cli.queues import STDIN, is_queue
+    from nccompile.cli.queues import is_queue
     from nccompile.toolchain import Compilation
 
     if stage not in (Stage.DECODED, Stage.PASSES):
         return open_job(path, machine, options, form).chunks()
-    if path != STDIN and is_queue(path):
+    if is_queue(path):
         raise UsageError(f"{path} is an OutQueue: it holds the planned stage only")
     wanted = Compilation.decoded if stage is Stage.DECODED else Compilation.passed
     return compiled(path, machine, options, form, wanted)[1]

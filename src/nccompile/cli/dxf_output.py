@@ -15,8 +15,8 @@ import typer
 
 from nccompile.backend.din66025 import ProgramFormat, program_text
 from nccompile.backend.files import replacing
-from nccompile.cli.inputs import ProgramOptions, machine_of
-from nccompile.cli.options import Report
+from nccompile.cli.inputs import machine_of
+from nccompile.cli.options import ProgramOptions, Report
 from nccompile.cli.outputs import require_picture, write_json
 from nccompile.cli.report import report as show
 from nccompile.diagnostics import Diagnostics, to_json

@@ -8,7 +8,15 @@ from typing import Annotated
 
 import typer
 
-from nccompile.cli.options import DiagnosticsFormat, Input, MachineFile, Passes, ReadOptions, Report
+from nccompile.cli.options import (
+    DiagnosticsFormat,
+    Input,
+    MachineFile,
+    Passes,
+    ProgramOptions,
+    ReadOptions,
+    Report,
+)
 
 __all__ = ["export_dxf"]
 
@@ -38,10 +46,8 @@ def export_dxf(
     place = output_of(path, output, ".dxf")
     keep_apart([path, machine], [place])
     drawing = DxfExport()
-    settings = {**vars(chosen), "passes": passes}
-    count = sum(
-        drawing.add(chunks, suffix) for suffix, chunks in stages(path, machine, settings, diagnostics)
-    )
+    program = ProgramOptions(**vars(chosen), passes=passes)
+    count = sum(drawing.add(chunks, suffix) for suffix, chunks in stages(path, machine, program, diagnostics))
     text = io.StringIO()
     drawing.write(text)
     write_file(place, text.getvalue().encode("utf-8", "surrogateescape"))

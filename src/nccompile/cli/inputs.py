@@ -21,12 +21,12 @@ from nccompile.toolpath import Toolpath
 
 __all__ = [
     "Job",
-    "ProgramOptions",
     "compiled",
     "finish",
     "machine_of",
     "open_job",
     "read_program",
+    "require_no_options",
 ]
 
 
@@ -73,9 +73,8 @@ def open_job(path: Path, machine: Machine, options: ProgramOptions, form: Report
 
     Raises: UsageError, QueueError;  typer.Exit(1): the program has errors, which have been reported.
     """
-    if path != STDIN and is_queue(path):
-        if options.given:
-            raise UsageError(f"{path} is an OutQueue: {', '.join(options.given)} acts on programs only")
+    if is_queue(path):
+        require_no_options(path, options)
         queue = read_queue(path)
         totals, origin = queue.total, queue.meta.provenance
         return _job(shown_path(path), queue.axes, queue.chunks, totals.job_time, totals.segments, origin)
@@ -84,6 +83,12 @@ def open_job(path: Path, machine: Machine, options: ProgramOptions, form: Report
     segments = sum(len(chunk) for chunk in held)
     name, seconds = compilation.source.name, compilation.time.seconds
     return _job(name, axes, lambda: iter(held), seconds, segments, compilation.provenance())
+
+
+def require_no_options(queue: Path, options: ProgramOptions) -> None:
+    """Raises UsageError for options that cannot act on an OutQueue."""
+    if options.given:
+        raise UsageError(f"{queue} is an OutQueue: {', '.join(options.given)} acts on programs only")
 
 
 def _job(
