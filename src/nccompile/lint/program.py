@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from io import BytesIO
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -22,15 +22,27 @@ from nccompile.source import STREAMED, LargeSource, Source
 from nccompile.toolchain import Compilation, Options
 from nccompile.toolpath import Toolpath
 
-__all__ = ["LINE_FEED", "Occurrence", "Program", "first", "prepare"]
+__all__ = ["LINE_FEED", "Occurrences", "Program", "first", "prepare"]
 
 Bytes: TypeAlias = npt.NDArray[np.uint8]
 Flags: TypeAlias = npt.NDArray[np.bool_]
 
 LINE_FEED = 10
 
-Occurrence = tuple[int, Word]
-"""A word with the index of its block."""
+
+class Occurrences(NamedTuple):
+    """Words of a letter in written order, and the indices of their blocks, rising.
+
+    Two lists, not one of pairs: the pairs of a long program take a hundredth of a second to free, and all threads
+    wait meanwhile.
+    """
+
+    blocks: list[int]
+    words: list[Word]
+
+    def pairs(self) -> Iterator[tuple[int, Word]]:
+        """(index of block, word) of each."""
+        return zip(self.blocks, self.words, strict=True)
 
 
 _MARKS = ("\ufeff", "\xff\xfe", "\xfe\xff")
@@ -87,16 +99,22 @@ class Program:
         return {block.line: block for block in self.blocks}
 
     @cached_property
-    def _words(self) -> dict[str, list[Occurrence]]:
-        found: dict[str, list[Occurrence]] = defaultdict(list)
+    def _words(self) -> dict[str, Occurrences]:
+        found: dict[str, Occurrences] = defaultdict(lambda: Occurrences([], []))
         for at, block in enumerate(self.blocks):
             for word in block.words:
-                found[word[0]].append((at, word))
+                places, words = found[word[0]]
+                places.append(at)
+                words.append(word)
         return found
 
-    def words(self, letter: str) -> Sequence[Occurrence]:
-        """All words of a letter in written order."""
-        return self._words.get(letter, ())
+    def occurrences(self, letter: str) -> Occurrences:
+        """All words of a letter."""
+        return self._words.get(letter, Occurrences([], []))
+
+    def words(self, letter: str) -> Iterator[tuple[int, Word]]:
+        """(index of block, word) of all words of a letter in written order."""
+        return self.occurrences(letter).pairs()
 
     @cached_property
     def codes(self) -> list[int | None]:

@@ -53,19 +53,17 @@ def state_behind(analysis: Analysis, line: int) -> State:
 
 def _last(program: Program, letter: str, at: int, counts: Callable[[Word, int | None], bool]) -> str:
     """The value of the last word of a letter up to block `at`, as written."""
-    words = program.words(letter)
-    place = bisect_right(words, at, key=lambda pair: pair[0])
-    for block, word in reversed(words[:place]):
-        if counts(word, program.codes[block]):
-            return word.number
+    blocks, words = program.occurrences(letter)
+    for place in range(bisect_right(blocks, at) - 1, -1, -1):
+        if counts(words[place], program.codes[blocks[place]]):
+            return words[place].number
     return ""
 
 
 def _last_of(program: Program, group: Group, at: int) -> int | None:
-    words = program.words("G")
-    place = bisect_right(words, at, key=lambda pair: pair[0])
-    for block, _ in reversed(words[:place]):
-        code = program.codes[block]
+    blocks, _ = program.occurrences("G")
+    for place in range(bisect_right(blocks, at) - 1, -1, -1):
+        code = program.codes[blocks[place]]
         if code is not None and code in INSTRUCTIONS and INSTRUCTIONS[code].group is group:
             return code
     return None
