@@ -33,10 +33,23 @@ _AXIS_WORD = re.compile(
 )
 _JUMP = re.compile(r"[Gg](?:0*20(?![0-9])|\$)")
 
+_PART = 1 << 16
+"""Characters that are searched at a time: a millisecond."""
+
 
 def axes_of(text: str, options: DecodeOptions) -> tuple[str, ...]:
     """The axes of a program: X Y Z, and those of the others that it or the start position names."""
-    return _axes({letter.upper() for letter in _AXIS_WORD.findall(text)}, options)
+    letters = {letter.upper() for part in _parts(text) for letter in _AXIS_WORD.findall(part)}
+    return _axes(letters, options)
+
+
+def _parts(text: str) -> Iterator[str]:
+    """A text cut at ends of lines: no thread could do anything while a long one is searched."""
+    begin = 0
+    while begin < len(text):
+        end = text.find("\n", begin + _PART) + 1 or len(text)
+        yield text[begin:end]
+        begin = end
 
 
 def _axes(letters: Set[str], options: DecodeOptions) -> tuple[str, ...]:
@@ -66,7 +79,7 @@ class Din66025:
             self.axes = _axes(found.letters, options)
             self._stream = None if options.ignore else source
         else:
-            jumps = _JUMP.search(source.text) is not None
+            jumps = any(_JUMP.search(part) for part in _parts(source.text))
             self.axes = axes_of(source.text, options)
         self._core = Core(source, self.axes, options, diagnostics, jumps)
         self._jumps = jumps
