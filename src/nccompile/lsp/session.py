@@ -18,10 +18,11 @@ from collections.abc import Callable
 from nccompile.errors import Cancelled, NccompileError
 from nccompile.lint.config import Config, config_for
 from nccompile.lsp.analysis import Analysis, Settings, Times, analyse, timed
-from nccompile.lsp.document import Document, Snapshot
+from nccompile.lsp.document import Document, Snapshot, forget
 from nccompile.lsp.threads import Worker
 from nccompile.lsp.warming import Warming
 from nccompile.machine.model import default_machine, load
+from nccompile.parser.lines import read_by_grammar
 
 __all__ = ["Outdated", "Session", "Work"]
 
@@ -93,6 +94,7 @@ class Session:
         self._warming = Warming()
         self._said: set[str] = set()
         self._idle: asyncio.TimerHandle | None = None
+        self._timings.start(read_by_grammar, 1, "N1")  # loads Lark, which the first edit would wait for
         gc.disable()  # an analysis leaves next to no cycles; see IDLE
 
     def open(self, document: Document) -> None:
@@ -154,23 +156,9 @@ class Session:
     async def _run(self, work: Work) -> None:
         document = work.document
         pause = min(max(PAUSE, 0.5 * document.seconds), LONGEST_PAUSE)
-        await asyncio.sleep(pause)
-        if not work.wanted:
-            return
-        loop = asyncio.get_running_loop()
-        begun = time.perf_counter()
-        snapshot, settings = document.snapshot(), self._settings(document)
         try:
-            analysis = await self._checks.run(_analysed, snapshot, work, settings)
-            if not work.wanted:
-                return
-            document.analysis = analysis
-            document.nodes = list(snapshot.nodes)
-            document.shown = analysis.report.ordered()
-            document.seconds = time.perf_counter() - begun
-            self._publish(document, True)
-            self._done(document, document.seconds)
-            work.checked.set_result(analysis)
+            await asyncio.sleep(pause)
+            analysis = await self._check(work)
             await asyncio.sleep(pause)  # times are for those who read, not for those who type
             if not work.wanted:
                 return
@@ -178,13 +166,35 @@ class Session:
             analysis.times = times
             if work.wanted:
                 work.timed.set_result(analysis)
-                self._idle = loop.call_later(IDLE, gc.collect)
+                self._idle = asyncio.get_running_loop().call_later(IDLE, gc.collect)
         except Cancelled:
             return
         except Exception:
             _log.exception("the analysis of %s failed", document.uri)
             self._say(f"nccompile: the analysis of {document.name} failed; please report it")
             work.drop()
+
+    async def _check(self, work: Work) -> Analysis:
+        """Checks a version and publishes what was found; raises Cancelled if it is not wanted any more."""
+        if not work.wanted:
+            raise Cancelled
+        document, begun = work.document, time.perf_counter()
+        snapshot, settings = document.snapshot(), self._settings(document)
+        outdated = snapshot.nodes
+        try:
+            analysis = await self._checks.run(_analysed, snapshot, work, settings)
+            if not work.wanted:
+                raise Cancelled
+            document.analysis = analysis
+            outdated, document.nodes = document.nodes, list(snapshot.nodes)
+        finally:
+            self._checks.start(forget, outdated)
+        document.shown = analysis.report.ordered()
+        document.seconds = time.perf_counter() - begun
+        self._publish(document, True)
+        self._done(document, document.seconds)
+        work.checked.set_result(analysis)
+        return analysis
 
     def _settings(self, document: Document) -> Settings:
         """The settings that hold for a document; the defaults, with a message, if they cannot be read."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import Any, ParamSpec, TypeVar
 
 __all__ = ["Worker"]
@@ -35,6 +36,11 @@ class Worker:
             raise
         finally:
             del answer  # an exception holds this frame, and the future the exception
+
+    def start(self, function: Callable[P, object], *arguments: P.args, **named: P.kwargs) -> None:
+        """Has something done that nobody waits for."""
+        with suppress(RuntimeError):  # after the end nothing has to be done any more
+            self._pool.submit(function, *arguments, **named)
 
     def shut_down(self) -> None:
         """Gives up what has not begun."""
