@@ -1,6 +1,6 @@
 ;;; check.el --- The set-up lines of docs/editors.md, tried  -*- lexical-binding: t -*-
 
-;; Run in batch mode behind those lines, on the program of tests/lsp/real_editors.py: what a user does by keys, done
+;; Run in batch mode behind those lines, on editors/bracket.nc: what a user does by keys, done
 ;; by the functions behind them.  Writes "ok" or "no", a name and what was seen.
 
 (require 'eglot)

@@ -1,4 +1,4 @@
--- Run in Neovim behind the set-up lines of docs/editors.md, on the program of tests/lsp/real_editors.py:
+-- Run in Neovim behind the set-up lines of docs/editors.md, on editors/bracket.nc:
 -- what a user does by keys, done by the functions behind them.  Writes "ok" or "no", a name and what was seen.
 
 local results = assert(io.open(os.getenv("RESULTS"), "w"))

@@ -4,28 +4,12 @@
 "use strict";
 
 const assert = require("node:assert/strict");
+const fs = require("node:fs");
 const path = require("node:path");
 const { after, before, test } = require("node:test");
 const { openWindow } = require("./support/window.js");
 
-const PROGRAM = `% bracket
-(rough)
-N10 G0 X0 Y0 Z5
-N20 G1 Z-2 F5
-N30 G1 X40 Y0 F20
-N40 g1 X40 Y20
-N50 G3 X30 Y30 I-10 J0
-N60 G1 X0 Y30
-(finish)
-N70 G91
-N80 G36 O$pass$ D3
-N90 G1 X0 Y-10
-N100 G2 X5 Y-5 I0 J-6
-N110 G37 O$pass$ D-1
-N120 G20 L90 K$pass$
-N130 G90
-N140 G0 Z5
-`;
+const PROGRAM = fs.readFileSync(path.join(__dirname, "..", "..", "bracket.nc"), "utf8");
 
 let window;
 let page;
