@@ -28,18 +28,20 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     return path.read_bytes()
 
 
-def _refused_or_equal(path: Path, data: bytes) -> bool:
-    """Whether the file was refused; fails if it was read as another queue."""
+def _is_refused(path: Path, data: bytes) -> bool:
     path.write_bytes(data)
     try:
-        queue = ncq.read(path).check()
-        (chunk,) = queue.chunks()
+        list(ncq.read(path).check().chunks())
     except QueueError:
         return True
-    assert same(chunk, small())
-    assert queue.meta.provenance == PROVENANCE
-    assert queue.total.job_time == 1.25
     return False
+
+
+def _is_equal(path: Path) -> bool:
+    """Whether the file is read as the queue that was written."""
+    queue = ncq.read(path).check()
+    (chunk,) = queue.chunks()
+    return same(chunk, small()) and queue.meta.provenance == PROVENANCE and queue.total.job_time == 1.25
 
 
 @settings(max_examples=400, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -48,20 +50,21 @@ def test_every_flipped_bit(tmp_path: Path, sound: bytes, data: st.DataObject) ->
     bit = data.draw(st.integers(0, 8 * len(sound) - 1))
     altered = bytearray(sound)
     altered[bit // 8] ^= 1 << bit % 8
-    _refused_or_equal(tmp_path / "part.ncq", bytes(altered))
+    place = tmp_path / "part.ncq"
+    assert _is_refused(place, bytes(altered)) or _is_equal(place)
 
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_every_truncation(tmp_path: Path, sound: bytes, data: st.DataObject) -> None:
     length = data.draw(st.integers(0, len(sound) - 1))
-    assert _refused_or_equal(tmp_path / "part.ncq", sound[:length])
+    assert _is_refused(tmp_path / "part.ncq", sound[:length])
 
 
 @settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.binary(max_size=200))
 def test_any_bytes(tmp_path: Path, data: bytes) -> None:
-    assert _refused_or_equal(tmp_path / "part.ncq", data)
+    assert _is_refused(tmp_path / "part.ncq", data)
 
 
 def _rebuilt(sound: bytes, change: Callable[[dict[str, bytes]], None], compression: int = 0) -> bytes:
