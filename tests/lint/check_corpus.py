@@ -1,6 +1,6 @@
 """Lints, fixes and formats every .nc program of folders, as the tests do with the samples.
 
-python -m tests.lint.check_corpus FOLDER..
+python -m tests.lint.check_corpus FOLDER|FILE..
 
 No program may have errors; `lint` must give what `compile` gives, and of programs that docs/lint.md lists the
 findings that are listed there; all fixes, each rule's alone and all together, and the formatter must keep the
@@ -11,9 +11,7 @@ from __future__ import annotations
 
 import re
 import sys
-import time
 from collections import Counter, defaultdict
-from pathlib import Path
 
 from nccompile.lint.config import Config
 from nccompile.lint.engine import lint
@@ -26,6 +24,7 @@ from nccompile.lint.rewrite import same_path
 from nccompile.source import Source
 from nccompile.toolchain import Compilation
 from nccompile.toolpath import Toolpath
+from tests.corpus import checked
 from tests.lint.programs import EVERY_RULE, OPTIONS, ROOT, read
 from tests.lint.test_engine import compiled, linted
 
@@ -91,18 +90,9 @@ def check(source: Source, expected: Counter[str] | None) -> str:
     return f"{done} fixes kept the path; findings: {found or 'none'}"
 
 
-def main(folders: list[str]) -> int:
-    failed = 0
+def main(places: list[str]) -> int:
     known = listed()
-    for path in sorted(p for folder in folders for p in Path(folder).glob("*.nc")):
-        begin = time.perf_counter()
-        try:
-            verdict = check(read(path), known.get(path.name))
-        except AssertionError as error:
-            failed += 1
-            verdict = f"FAILED {error}"
-        print(f"{path.name:24} {time.perf_counter() - begin:6.1f} s  {verdict}", flush=True)
-    return 1 if failed else 0
+    return checked(places, lambda path: check(read(path), known.get(path.name)))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """Takes every .nc program of folders through every pass, turned on for the whole program, with --verify.
 
-python -m tests.passes.check_corpus FOLDER.. [--only NAME]        prints one line a program and pass, failures with
-                                                                  the reason; exit 1 if there were any
+python -m tests.passes.check_corpus FOLDER|FILE.. [--only NAME]
+
+Prints one line a program and pass, failures with the reason; exit 1 if there were any.
 """
 
 from __future__ import annotations
@@ -10,7 +11,6 @@ import argparse
 import sys
 import time
 import traceback
-from pathlib import Path
 
 from nccompile.diagnostics import Severity
 from nccompile.errors import UsageError
@@ -19,6 +19,7 @@ from nccompile.passes.base import Report
 from nccompile.passes.pipeline import parse
 from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options
+from tests.corpus import programs
 from tests.passes.every import EVERY, Turned
 
 __all__ = ["check"]
@@ -52,11 +53,11 @@ def check(source: Source, turned: Turned) -> Report | None:
 def main(arguments: list[str]) -> int:
     """The exit code."""
     options = argparse.ArgumentParser(prog="python -m tests.passes.check_corpus")
-    options.add_argument("folders", nargs="+", type=Path)
+    options.add_argument("places", nargs="+")
     options.add_argument("--only", default="", help="passes whose name holds this")
     given = options.parse_args(arguments)
     failed = 0
-    for path in sorted(p for folder in given.folders for p in folder.glob("*.nc")):
+    for path in programs(given.places):
         source = Source.read(path)
         for turned in EVERY:
             if given.only not in turned.spec:

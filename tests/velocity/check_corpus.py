@@ -1,6 +1,6 @@
 """What must hold for every planner (`must_hold`), on every .nc program of folders.
 
-python -m tests.velocity.check_corpus [--seconds S] FOLDER..      job time of a program that is sampled, default 60
+python -m tests.velocity.check_corpus [--seconds S] FOLDER|FILE..      job time of a program that is sampled, default 60
 
 Plans whole programs with every planner and window, and samples them at 1 ms and, a tenth as long, at 0.1 ms.
 """
@@ -12,7 +12,6 @@ import sys
 import time
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from nccompile.machine.model import default_machine
 from nccompile.passes.velocity import PLANNERS, PlanSettings, plan, row_times
 from nccompile.source import Source
 from nccompile.toolpath.columns import Toolpath
+from tests.corpus import programs
 from tests.velocity.must_hold import NEVER_SLOWER, broken_limits, times_by_window
 
 __all__ = ["main"]
@@ -54,11 +54,11 @@ def main(arguments: list[str]) -> int:
     """Prints a line for every program and planner; returns 1 if anything is broken."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("folders", nargs="+", type=Path)
+    parser.add_argument("places", nargs="+")
     given = parser.parse_args(arguments)
     use(compiled=True)
     failed = 0
-    for file in sorted(p for folder in given.folders for p in folder.glob("*.nc")):
+    for file in programs(given.places):
         path = Toolpath.join(list(decode(Source.read(file), DecodeOptions(), Diagnostics())))
         for planner in PLANNERS:
             begin = time.process_time()
