@@ -15,6 +15,7 @@ from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options
 from nccompile.toolpath import Toolpath
 from nccompile.toolpath.text import format_toolpath
+from tests.words import is_same
 
 HERE = Path(__file__).parent
 SAMPLES = HERE.parents[1] / "samples"
@@ -31,13 +32,7 @@ def _planned(name: str) -> str:
 
 
 def _same(word: str, accepted: str) -> bool:
-    if word == accepted:
-        return True
-    try:
-        number, wanted = float(word), float(accepted)
-    except ValueError:
-        return False
-    return abs(number - wanted) <= 1e-9 * max(1.0, abs(wanted))
+    return is_same(word, accepted, absolute=1e-9, relative=1e-9)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)

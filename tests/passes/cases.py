@@ -29,6 +29,7 @@ from nccompile.toolpath.columns import Toolpath
 from nccompile.toolpath.text import format_toolpath, parse_toolpath
 from nccompile.toolpath.verify import verify_chain
 from tests.passes.paths import windows
+from tests.words import is_same
 
 __all__ = ["Case", "agree", "examples_in", "run_case"]
 
@@ -128,10 +129,4 @@ def agree(got: str, wanted: str) -> bool:
 
 
 def _same(word: str, wanted: str) -> bool:
-    if word == wanted:
-        return True
-    try:
-        number, aim = float(word), float(wanted)
-    except ValueError:
-        return False
-    return abs(number - aim) <= _NEAR
+    return is_same(word, wanted, absolute=_NEAR)

@@ -26,6 +26,7 @@ class _Tree(Transformer[Token, Block | Header]):
         return Header(name, 1, first.column, last.column + len(last.rstrip()))
 
     def block(self, tokens: list[Any]) -> Block:
+        """Sorts the tokens into number, words and comments."""
         if not tokens:
             return Block(1, 1, 1, None, ())
         number, skip = None, False
