@@ -40,7 +40,7 @@ class Listed:
     """Parsed blocks; those that hold nothing but comments are left out."""
 
     def __init__(self, blocks: Iterable[Block]) -> None:
-        self._blocks = [block for block in blocks if _counts(block)]
+        self._blocks = [block for block in blocks if not block.is_empty]
         self._numbers: dict[int, list[int]] = {}
         for at, block in enumerate(self._blocks):
             number = _number(block)
@@ -93,7 +93,7 @@ class Scanned:
                 kept.append(row)
                 continue
             block = reader.take(int(table.block_line[row]), table.text(row))
-            if block is not None and _counts(block):
+            if block is not None and not block.is_empty:
                 self._nodes[first + len(kept)] = block
                 kept.append(row)
             if reader.stopped:
@@ -143,10 +143,6 @@ class Scanned:
         """The block number in use that is nearest to one; the first of two; None if there are no numbers."""
         known = self._number[~np.isnan(self._number)]
         return int(known[np.argmin(np.abs(known - number))]) if len(known) else None
-
-
-def _counts(block: Block) -> bool:
-    return bool(block.words or block.number or not block.sound)
 
 
 def _number(block: Block) -> int | None:

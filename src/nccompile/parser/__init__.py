@@ -94,11 +94,11 @@ class Reader:
         if isinstance(node, Header):
             self.stopped = not self.header(node, self.any_block)
             return None
-        if not (node.words or node.number or node.comments or not node.sound):
-            return None
+        if node.is_empty:
+            return node if node.comments else None
         if not self.any_block and (node.words or node.number):
             self.started(node)
-        self.any_block = self.any_block or bool(node.words or node.number or not node.sound)
+        self.any_block = True
         if self.unreadable >= MAX_UNREADABLE:
             self.give_up(node)
             self.stopped = True

@@ -82,6 +82,11 @@ class Block(NamedTuple):
         """The place of the line's text without the blanks around it."""
         return Span(self.line, self.column, self.end)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether it has neither number nor words; a line that could not be read may have both."""
+        return self.sound and self.number is None and not self.words
+
 
 class Header(NamedTuple):
     """The line that starts a program: `%` and its name, which may be empty."""
