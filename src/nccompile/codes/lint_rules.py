@@ -67,7 +67,8 @@ PAGES: tuple[Page, ...] = (
     ),
     Page(
         "NC059", "A skip mark on a block that does nothing",
-        "/ before a block without words.\nThere is nothing to skip; usually the / was meant for the next block.",
+        "/ before a block without words, or alone in a line.\n"
+        "There is nothing to skip; usually the / was meant for the next block.",
         "% a\n/N10 (rough)\nN20 G1 X1 F20",
         "% a\n/N10 G1 X1 F20\nN20 G1 X2",
     ),

@@ -41,7 +41,7 @@ _CONTROL_BYTES = bytes([*range(0x09), *range(0x0E, 0x20), 0x7F])
 
 
 def parse(source: Source, diagnostics: Diagnostics) -> Iterator[Block]:
-    """The blocks of a program in order; lines without words, number and comment are left out.
+    """The blocks of a program in order; blank lines are left out.
 
     Every line that is no block adds one error and comes as a block that is not `sound`.  The header is not a
     block (see `read_header`).  Time is linear in the text, memory that of one block.
@@ -95,7 +95,7 @@ class Reader:
             self.stopped = not self.header(node, self.any_block)
             return None
         if node.is_empty:
-            return node if node.comments else None
+            return node if node.comments or node.skip else None
         if not self.any_block and (node.words or node.number):
             self.started(node)
         self.any_block = True

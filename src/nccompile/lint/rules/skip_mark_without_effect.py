@@ -14,9 +14,10 @@ __all__ = ["SkipMarkWithoutEffect"]
 class SkipMarkWithoutEffect(Rule):
     r"""A skip mark on a block that does nothing.
 
-    What: / before a block without words.
+    What: / before a block without words, or alone in a line.
     Why: there is nothing to skip; usually the / was meant for the next block.
     NC059: % a\n/N10 (rough)\nN20 G1 X1 F20
+    NC059: % a\n/\nN20 G1 X1 F20
     Okay: % a\n/N10 G1 X1 F20\nN20 G1 X2
     Fix: removes the mark.
     """
