@@ -252,8 +252,7 @@ PAGES: tuple[Page, ...] = (
     ),
     Page(
         "NC251", "A feed move of no length",
-        "G1, or a curve that could not be made, that ends where it starts; not after G92, where it gives the\n"
-        "position out (SoftMotion §3.2).\n"
+        "G1 or G5 that ends where it starts; not after G92, where it gives the position out (SoftMotion §3.2).\n"
         "It moves nothing. A point that stands twice comes from rounding in the CAM system, or one of its\n"
         "coordinates was meant to differ.",
         "% a\nN10 G1 X5 F20\nN20 G1 X5",
