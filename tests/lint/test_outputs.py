@@ -97,13 +97,19 @@ def test_lint_command(command: Command, tmp_path: Path) -> None:  # noqa: F811
     assert "       1  NC052  " in command("lint", "noted.nc", "--statistics").out
 
 
-def test_a_file_without_text_reads_as_compile_says(command: Command, tmp_path: Path) -> None:  # noqa: F811
-    for text in ("", "\n \n"):
+def test_a_file_without_a_block_reads_as_compile_says(command: Command, tmp_path: Path) -> None:  # noqa: F811
+    for text in ("", "\n \n", "% a\n", "% größe\n(N10 G1 X5)\n/\n"):
         (tmp_path / "empty.nc").write_text(text)
         short, whole = command("lint", "empty.nc"), command("lint", "empty.nc", "--format", "json")
         assert short.code == whole.code == 1
         assert short.err == whole.err == "empty.nc: 1 error\n"
         assert short.out == command("compile", "empty.nc").err.replace(short.err, "")
+
+
+def test_warnings_of_a_file_without_a_block_can_be_ignored(command: Command, tmp_path: Path) -> None:  # noqa: F811
+    (tmp_path / "a.nc").write_text("% a\n%\n")
+    assert "warning[NC008]" in command("lint", "a.nc").out
+    assert "NC008" not in command("lint", "a.nc", "--ignore", "NC008").out
 
 
 def test_lint_command_fixes_files_and_streams(command: Command, tmp_path: Path) -> None:  # noqa: F811

@@ -134,8 +134,8 @@ def _keep_fix(report: Report, found: Diagnostic, fix: Fix | None) -> None:
 
 
 def _by_rules(program: Program, selected: Selected) -> Iterator[tuple[Rule, list[Fixable]]]:
-    """The rules that found something, with the wanted findings and their fixes."""
-    if not program.blocks:
+    """The rules that found something, with the wanted findings and their fixes; none where there is no program."""
+    if all(block.is_empty for block in program.blocks):
         return
     for rule in RULES:
         if not program.config.shows(rule.code, rule.default):
