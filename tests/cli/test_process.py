@@ -65,7 +65,22 @@ def test_a_reader_that_goes_is_no_error(tmp_path: Path, command: list[str]) -> N
     assert (process.wait(timeout=60), said) == (0, "")
 
 
-@pytest.mark.parametrize("arguments", ["dump p.nc", "lint p.nc", "--help"])
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["lint", "--help"], ["machine", "check", "--help"], ["--version"]]
+)
+def test_nobody_need_read_help(arguments: list[str], unbuffered: str) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [*NCCOMPILE, *arguments], stdout=writing, stderr=subprocess.PIPE, check=False,
+        env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+    )  # fmt: skip
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+@pytest.mark.parametrize("arguments", ["dump p.nc", "lint p.nc", "--help", "--version"])
 @pytest.mark.parametrize(("stdout", "code"), [(">&-", 0), ("> /dev/full", 2)])
 def test_a_closed_or_full_standard_output(tmp_path: Path, arguments: str, stdout: str, code: int) -> None:
     (tmp_path / "p.nc").write_text("% p\nN10 G1 X1 F20\nN20 G1 X2 F20\n")

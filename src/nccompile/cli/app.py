@@ -9,18 +9,16 @@
 
 from __future__ import annotations
 
-import io
 import os
 import signal
-import sys
 import traceback
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from types import FrameType
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperGroup
 
 from nccompile import kernels
 from nccompile.cli.compile import compile_program
@@ -37,6 +35,7 @@ from nccompile.cli.machine import check
 from nccompile.cli.plot import plot
 from nccompile.cli.run import run_program
 from nccompile.cli.sample import sample
+from nccompile.cli.streams import forget_stdout, prepare_streams, say, written
 from nccompile.errors import NccompileError
 from nccompile.version import VERSION
 
@@ -45,6 +44,30 @@ __all__ = ["app", "run"]
 INTERNAL = 3
 INTERRUPTED = 130
 TERMINATED = 143
+
+
+@contextmanager
+def _whoever_reads() -> Iterator[None]:
+    """A reader that goes has what it wanted; typer would end with 1."""
+    try:
+        yield
+    except BrokenPipeError as error:
+        forget_stdout()
+        raise typer.Exit(0) from error
+
+
+class Commands(TyperGroup):
+    """The commands; `--help | head` is no error."""
+
+    def make_context(self, *given: Any, **named: Any) -> Any:
+        """Reads the options before the command, `--help` among them."""
+        with _whoever_reads():
+            return super().make_context(*given, **named)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Finds the command, reads its options and runs it."""
+        with _whoever_reads():
+            return super().invoke(ctx)
 
 
 class Guarded(TyperCommand):
@@ -56,23 +79,20 @@ class Guarded(TyperCommand):
         try:
             return super().invoke(ctx)
         except NccompileError as error:
-            _say(f"error: {error}")
+            say(f"error: {error}")
             raise typer.Exit(error.exit_code) from error
         except MemoryError as error:
-            _say("error: not enough memory")
+            say("error: not enough memory")
             raise typer.Exit(INTERNAL) from error
-        except (typer.Exit, typer.Abort, KeyboardInterrupt):
+        except (typer.Exit, typer.Abort, KeyboardInterrupt, BrokenPipeError):
             raise
-        except BrokenPipeError as error:  # the reader has what it wanted
-            _forget_stdout()
-            raise typer.Exit(0) from error
         except OSError as error:
-            _say(f"error: {error.strerror or error}" + (f": {error.filename}" if error.filename else ""))
+            say(f"error: {error.strerror or error}" + (f": {error.filename}" if error.filename else ""))
             raise typer.Exit(2) from error
         except Exception as error:
             if os.environ.get("NCCOMPILE_DEBUG"):
                 traceback.print_exc()
-            _say(
+            say(
                 f"internal error: {type(error).__name__}: {str(error).splitlines()[:1]}; please report it "
                 f"with the command line and the input (NCCOMPILE_DEBUG=1 shows where it happened)"
             )
@@ -81,6 +101,7 @@ class Guarded(TyperCommand):
 
 app = typer.Typer(
     name="nccompile",
+    cls=Commands,
     help="Compiles CNC part programs (DIN 66025) to planned toolpaths and runs them on virtual drives.",
     add_completion=False,
     no_args_is_help=True,
@@ -127,59 +148,23 @@ def _options(
 
 def run(arguments: Sequence[str]) -> int:
     """Runs one command line and returns its exit code; nothing but Python's own start can raise."""
-    _open_closed_streams()
-    _write_any_text()
+    prepare_streams()
     _exit_on_terminate()
+    return written(lambda: _run(arguments))
+
+
+def _run(arguments: Sequence[str]) -> int:
+    """Raises OSError: help cannot be written; no command has begun."""
+    code = 0
     try:
         app(args=list(arguments), prog_name="nccompile")
     except SystemExit as leaving:
         code = leaving.code if isinstance(leaving.code, int) else int(leaving.code is not None)
     except KeyboardInterrupt:
         code = INTERRUPTED
-    except OSError as error:  # help that cannot be written: no command has begun
-        _say(f"error: standard output cannot be written: {error.strerror or error}")
-        code = 2
-        _forget_stdout()
-    else:
-        code = 0
     if code == INTERRUPTED:
-        _say("interrupted")
-    return _close_stdout(code)
-
-
-def _open_closed_streams() -> None:
-    """Gives streams that the caller has closed (`>&-`) an empty file, so that nobody need ask for them."""
-    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:
-            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))  # noqa: SIM115 - open till the end
-
-
-def _write_any_text() -> None:
-    """Files and pipes get UTF-8; what a terminal, or the name of a file, cannot say is written as an escape."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            fixed = stream.isatty() or "PYTHONIOENCODING" in os.environ
-            stream.reconfigure(encoding=None if fixed else "utf-8", errors="backslashreplace")
-
-
-def _close_stdout(code: int) -> int:
-    """Flushes what is left; a reader that has gone (`| head`) is not an error."""
-    try:
-        sys.stdout.flush()
-    except BrokenPipeError:
-        _forget_stdout()
-    except OSError as error:
-        _say(f"error: standard output cannot be written: {error.strerror or error}")
-        _forget_stdout()
-        return 2
+        say("interrupted")
     return code
-
-
-def _forget_stdout() -> None:
-    """Lets what is still written to standard output vanish, so that leaving Python does not fail on it."""
-    nothing = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nothing, sys.stdout.fileno())
-    os.close(nothing)
 
 
 def _exit_on_terminate() -> None:
@@ -195,12 +180,4 @@ def _exit_on_terminate() -> None:
 
 
 def _announce() -> None:
-    _say("compiling kernels for this computer, once (10 to 30 s) ...")
-
-
-def _say(text: str) -> None:
-    """A line on stderr; if stderr is closed nobody wants it."""
-    try:
-        print(text, file=sys.stderr)
-    except (OSError, ValueError):
-        return
+    say("compiling kernels for this computer, once (10 to 30 s) ...")
