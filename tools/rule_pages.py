@@ -14,6 +14,7 @@ from pathlib import Path
 
 from nccompile.codes import PAGES
 from nccompile.codes.page import Page
+from nccompile.lint.base import Rule
 from nccompile.lint.pages import markdown, sheet_of
 from nccompile.lint.registry import RULES
 from nccompile.lint.remedies import REMEDIES
@@ -66,7 +67,7 @@ def documents() -> dict[str, str]:
         else:
             texts[f"{code}.md"] = markdown(page, sheet_of(rule).fix, rule.severity, rule.default)
     rows = [
-        f"| [{code}]({code}.md) | {page.title} | {_origin(code in rules and rules[code].default, code in rules)} |"
+        f"| [{code}]({code}.md) | {page.title} | {_origin(code, rules.get(code))} |"
         for code, page in pages().items()
     ]
     texts["README.md"] = "\n".join(
@@ -82,10 +83,20 @@ def pages() -> dict[str, Page]:
     return dict(sorted({**PAGES, **current}.items()))
 
 
-def _origin(is_default: bool, is_rule: bool) -> str:
-    if not is_rule:
-        return "`compile`, `lint`"
-    return "`lint`" if is_default else "`lint`, if selected"
+_ORIGINS = {
+    "NC": "`compile`, `lint`",
+    **dict.fromkeys(("NC302", "NC303", "NC304"), "`compile -p`"),
+    "NC5": "`compile --verify`",
+    "NC6": "`import-dxf`",
+    "NC7": "`run`",
+}
+"""What gives the codes that begin so; the longest counts."""
+
+
+def _origin(code: str, rule: Rule | None) -> str:
+    if rule is None:
+        return _ORIGINS[max((begin for begin in _ORIGINS if code.startswith(begin)), key=len)]
+    return "`lint`" if rule.default else "`lint`, if selected"
 
 
 def main() -> None:
