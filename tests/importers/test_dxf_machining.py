@@ -169,7 +169,7 @@ def test_open_paths_have_no_inside(tmp_path: Path) -> None:
     made, path = cut(doc, tmp_path, side="inside", tool_radius=1.0)
 
     assert codes(made) == {"NC614": 1}
-    assert path.target[-1, 0] == 10.0
+    assert path.target[path.kind == Kind.LINE][-1, 0] == 10.0
 
 
 def test_a_tool_that_does_not_fit_is_said(tmp_path: Path) -> None:
@@ -179,7 +179,7 @@ def test_a_tool_that_does_not_fit_is_said(tmp_path: Path) -> None:
     made, path = cut(doc, tmp_path, side="inside", tool_radius=3.0)
 
     assert codes(made) == {"NC615": 1}
-    assert path.target[:, 0].min() == 25.0
+    assert path.target[path.kind == Kind.ARC, 0].min() == 25.0
 
 
 def test_a_drawing_of_which_nothing_is_left_is_an_error(tmp_path: Path) -> None:
@@ -254,6 +254,27 @@ def test_switches_and_m_functions_frame_the_contour(tmp_path: Path) -> None:
     assert path.events.number[switches].tolist() == [4, -4]
     assert path.events.position[switches].tolist() == [0.0, 1.0]
     assert path.target[-1, :2].tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    ("program", "operation", "end"),
+    [
+        ({}, {}, "G1 Y0"),  # it comes back by itself
+        ({"origin": [-5, 1]}, {}, "G0 X-5 Y1"),
+        ({"park": [1, 2]}, {"m_off": 8}, "G0 X1 Y2"),
+        ({}, {"depth": 1.0}, "G0 Z5"),
+        ({"origin": [-5, 1], "end_m": [5]}, {"m_off": 8}, "M5"),
+    ],
+)
+def test_programs_end_on_a_positioning_or_where_they_began(
+    program: dict[str, Any], operation: dict[str, Any], end: str, tmp_path: Path
+) -> None:
+    made = machine(square(), tmp_path, Job.model_validate({"program": program, "operation": [operation]}))
+
+    path, _ = compiled(made.text)
+    moves = path.kind[(path.kind != Kind.M_FUNCTION) & (path.kind != Kind.DWELL)]
+    assert made.text.splitlines()[-1].partition(" ")[2] == end
+    assert moves[-1] == Kind.POSITIONING or path.end.tolist() == path.start.tolist()
 
 
 @pytest.mark.parametrize("kind", ["line", "arc"])

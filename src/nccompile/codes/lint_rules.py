@@ -213,7 +213,7 @@ PAGES: tuple[Page, ...] = (
     ),
     Page(
         "NC168", "The program ends on a feed move",
-        "No positioning (G0) after the last feed move.\n"
+        "No positioning (G0) after the last feed move, which does not lead back to where the program began.\n"
         "The tool stays where it cut last; the next program, or the operator, has to move it away.",
         "% a\nN10 G0 X5\nN20 G1 X10 F20",
         "% a\nN10 G0 X5\nN20 G1 X10 F20\nN30 G0 Z50",

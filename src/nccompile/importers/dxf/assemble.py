@@ -55,6 +55,15 @@ class Moves:
         if target != self.at:
             self._add(np.array([kind], np.uint8), np.array([target]), np.zeros((1, CURVE_PARAMETERS)), feed)
 
+    @property
+    def ends_in_contact(self) -> bool:
+        """Whether the last move is a feed move."""
+        for kind in reversed(self._kind):
+            moves = kind[(kind != Kind.M_FUNCTION) & (kind != Kind.DWELL)]
+            if len(moves):
+                return bool(moves[-1] != Kind.POSITIONING)
+        return False
+
     def follow(self, pieces: Pieces, heights: Floats | float, feed: float) -> None:
         """The pieces one after the other, ending at the heights Z (one for all or one each)."""
         target = np.column_stack([pieces.end.real, pieces.end.imag, np.broadcast_to(heights, len(pieces))])

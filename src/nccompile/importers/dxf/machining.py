@@ -264,7 +264,10 @@ def _drill(at: complex, operation: Operation, moves: Moves) -> None:
 
 def finish(moves: Moves, job: Job) -> None:
     """The place and M functions at the program's end."""
-    if job.program.park is not None:
-        moves.rapid(complex(*job.program.park), moves.at[2])
+    place = job.program.park
+    if place is None and moves.ends_in_contact:
+        place = job.program.origin
+    if place is not None:
+        moves.rapid(complex(*place), moves.at[2])
     for number in job.program.end_m:
         moves.wait(Kind.M_FUNCTION, number, 0.0)

@@ -14,10 +14,11 @@ __all__ = ["EndsInContact"]
 class EndsInContact(Rule):
     r"""The program ends on a feed move.
 
-    What: no positioning (G0) after the last feed move.
+    What: no positioning (G0) after the last feed move, which does not lead back to where the program began.
     Why: the tool stays where it cut last; the next program, or the operator, has to move it away.
     NC168: % a\nN10 G0 X5\nN20 G1 X10 F20
     Okay: % a\nN10 G0 X5\nN20 G1 X10 F20\nN30 G0 Z50
+    Okay: % a\nN10 G0 X5\nN20 G1 X10 F20\nN30 G1 X0
     """
 
     code = "NC168"
@@ -28,6 +29,8 @@ class EndsInContact(Rule):
         """Looks at the last move."""
         if not any(move == 0 for move in program.moves):
             return  # a program without any positioning is a part of another one
+        if _comes_back(program):
+            return
         for at in range(len(program.moves) - 1, -1, -1):
             if program.moves[at] is not None:
                 if program.moves[at] != 0:
@@ -37,3 +40,10 @@ class EndsInContact(Rule):
                         "end with a positioning, as in G0 Z50",
                     )  # fmt: skip
                 return
+
+
+def _comes_back(program: Program) -> bool:
+    """Whether a program without errors ends where it began."""
+    if program.diagnostics.errors or not program.chunks:
+        return False
+    return bool((program.chunks[0].start == program.chunks[-1].end).all())
