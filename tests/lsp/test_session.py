@@ -73,3 +73,16 @@ def test_an_edit_of_a_large_file_is_answered_before_the_whole_is_checked_again()
         assert "NC001" in {found["code"] for found in first["params"]["diagnostics"]}
         assert (first["params"]["version"], last["method"]) == (2, "nccompile/checked")
         assert writer.shown() == writer.expected()
+
+
+ENDLESS = "% a\nN5 G36 O$n$ D1\nN10 G1 X0 F20\n" + "G1 X1\nG1 X2\n" * 100 + "G37 O$n$ D1\nG20 L10 K$n$\n"
+
+
+def test_a_document_does_not_wait_for_the_endless_loop_of_another() -> None:
+    with serving() as client:
+        client.open("untitled:endless", ENDLESS)
+        client.open("untitled:short", "% a\nN10 G1 X1 F20\nN20 G0 X2\n")
+        client.checked("untitled:short")
+        assert not any(message["params"].get("uri") == "untitled:endless" for message in client.notifications)
+        client.change("untitled:endless", {"text": "% a\nG1 X1\n"})
+        assert "NC101" in {found["code"] for found in client.checked("untitled:endless")}

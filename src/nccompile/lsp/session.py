@@ -32,6 +32,9 @@ PAUSE, LONGEST_PAUSE = 0.02, 0.2
 IDLE = 30.0
 """Time without edits after which garbage is looked for [s]: among millions of words that takes a while."""
 
+AT_ONCE = 4
+"""Documents that are checked at a time: a loop that never ends is decoded for seconds, which only its own waits for."""
+
 _log = logging.getLogger(__name__)
 
 
@@ -89,8 +92,8 @@ class Session:
         self.documents: dict[str, Document] = {}
         self._publish, self._say, self._done = publish, say, done
         self._works: dict[str, Work] = {}
-        self._checks = Worker("check")
-        self._timings = Worker("timing")
+        self._checks = Worker("check", AT_ONCE)
+        self._timings = Worker("timing", AT_ONCE)
         self._warming = Warming()
         self._said: set[str] = set()
         self._idle: asyncio.TimerHandle | None = None

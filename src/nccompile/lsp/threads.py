@@ -19,10 +19,10 @@ R = TypeVar("R")
 
 
 class Worker:
-    """A thread that does one thing after the other."""
+    """A thread that does one thing after the other, or a few that share what there is to do."""
 
-    def __init__(self, name: str) -> None:
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix=name)
+    def __init__(self, name: str, threads: int = 1) -> None:
+        self._pool = ThreadPoolExecutor(threads, thread_name_prefix=name)
 
     async def run(self, function: Callable[P, R], *arguments: P.args, **named: P.kwargs) -> R:
         """What a function gives or raises; given up, it is not begun any more, but if begun goes on to its end."""
