@@ -94,13 +94,13 @@ def _check(
     from nccompile.source import Source
 
     source = Source.from_bytes(name_of(path), data)
-    if not fix:
-        return lint(source, options, config, limit=limit).findings()
-    fixed = apply_fixes(source, options, config, limit)
-    store(path, data, encoding_of(data).encode(fixed.text))
-    if fixed.applied:
-        print(f"{path}: {fixed.applied} finding{'s' * (fixed.applied != 1)} fixed", file=sys.stderr)
-    return fixed.report.findings()
+    if fix:
+        fixed = apply_fixes(source, options, config)
+        store(path, data, encoding_of(data).encode(fixed.text))
+        if fixed.applied:
+            print(f"{path}: {fixed.applied} finding{'s' * (fixed.applied != 1)} fixed", file=sys.stderr)
+        source = Source(source.name, fixed.text, source.sha256)
+    return lint(source, options, config, limit=limit).findings()
 
 
 @contextmanager

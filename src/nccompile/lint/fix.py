@@ -23,15 +23,14 @@ MAX_ROUNDS = 40
 
 
 class Fixed(NamedTuple):
-    """The text after fixing, how many were applied, and what is left."""
+    """The text after fixing, and how many fixes were applied."""
 
     text: str
     applied: int
-    report: Report
 
 
-def apply_fixes(source: Source, options: Options, config: Config, limit: int | None = None) -> Fixed:
-    """Fixes what can be fixed; `limit` acts on the findings of the report that is left."""
+def apply_fixes(source: Source, options: Options, config: Config) -> Fixed:
+    """Fixes what can be fixed."""
     count = 0
     refused: set[str] = set()
     report = lint(source, options, config, limit=0)
@@ -53,7 +52,7 @@ def apply_fixes(source: Source, options: Options, config: Config, limit: int | N
                 refused.clear()  # what was not possible may be now
                 break
             refused.add(code)
-    return Fixed(source.text, count, lint(source, options, config, limit=limit))
+    return Fixed(source.text, count)
 
 
 def _apart(fixes: list[Fix]) -> list[Fix]:
