@@ -12,7 +12,7 @@ from nccompile.errors import Cancelled
 from nccompile.lint.base import Fix, Rule
 from nccompile.lint.config import Config
 from nccompile.lint.ignores import Ignores
-from nccompile.lint.program import Program, prepare
+from nccompile.lint.program import Program, always, prepare
 from nccompile.lint.registry import RULES
 from nccompile.lint.remedies import remedy
 from nccompile.source import Source
@@ -85,7 +85,7 @@ def lint(
     config: Config,
     *,
     limit: int | None = None,
-    wanted: Callable[[], bool] | None = None,
+    wanted: Callable[[], bool] = always,
 ) -> Report:
     """Checks a program.
 
@@ -94,8 +94,7 @@ def lint(
     Raises:   Cancelled: it was not wanted any more.
     """
     most = ALL if limit == 0 else limit
-    goes_on = {} if wanted is None else {"wanted": wanted}
-    return check(prepare(source, options, config, limit=most, **goes_on), gather=limit is None)
+    return check(prepare(source, options, config, limit=most, wanted=wanted), gather=limit is None)
 
 
 def check(program: Program, *, gather: bool) -> Report:

@@ -22,7 +22,7 @@ from nccompile.source import STREAMED, LargeSource, Source
 from nccompile.toolchain import Compilation, Options
 from nccompile.toolpath import Toolpath
 
-__all__ = ["LINE_FEED", "Occurrences", "Program", "first", "prepare"]
+__all__ = ["LINE_FEED", "Occurrences", "Program", "always", "first", "prepare"]
 
 Bytes: TypeAlias = npt.NDArray[np.uint8]
 Flags: TypeAlias = npt.NDArray[np.bool_]
@@ -49,7 +49,8 @@ _MARKS = ("\ufeff", "\xff\xfe", "\xfe\xff")
 """Byte-order marks; encoding a text that still has one would not give back its bytes."""
 
 
-def _always() -> bool:
+def always() -> bool:
+    """That findings are wanted whatever happens."""
     return True
 
 
@@ -68,7 +69,7 @@ class Program:
     chunks: list[Toolpath]
     machine: Machine
     config: Config
-    wanted: Callable[[], bool] = field(default=_always, repr=False)
+    wanted: Callable[[], bool] = field(default=always, repr=False)
 
     @cached_property
     def path(self) -> Toolpath:
@@ -194,7 +195,7 @@ def first(block: Block, letter: str) -> Word | None:
 
 
 def prepare(
-    source: Source, options: Options, config: Config, *, limit: int | None = None, wanted: Callable[[], bool] = _always
+    source: Source, options: Options, config: Config, *, limit: int | None = None, wanted: Callable[[], bool] = always
 ) -> Program:  # fmt: skip
     """Reads and decodes a program as `compile` does.
 
