@@ -49,6 +49,21 @@ def test_links_of_documents_lead_somewhere(path: Path) -> None:
     assert [t for t in targets if not (path.parent / t).exists()] == []
 
 
+def test_the_life_of_a_block_names_what_is_there() -> None:
+    """docs/architecture.md: rows of files, each with functions and classes of it behind it."""
+    text = (ROOT / "docs" / "architecture.md").read_text().partition("## The life of")[2]
+    missing, source = [], ""
+    for row in re.findall(r"^\| \d+ \|.*\| (.*) \|$", text, re.MULTILINE):
+        for name in re.findall(r"`([^`]+)`", row):
+            if "/" in name or name.endswith(".py"):
+                place = ROOT / ("" if name.startswith("grammars") else "src/nccompile") / name
+                source = place.read_text() if place.exists() else ""
+                missing += [] if source else [name]
+            elif not re.search(rf"\b(?:def|class) {name.split('.')[-1]}\b", source):
+                missing.append(name)
+    assert missing == []
+
+
 def test_documents_that_the_sources_name_are_there() -> None:
     named = {
         (found, _name(path)) for path in SOURCES for found in re.findall(r"docs/[\w/.-]*\w", path.read_text())

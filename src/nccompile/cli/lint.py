@@ -98,7 +98,9 @@ def _check(
         fixed = apply_fixes(source, options, config)
         store(path, data, encoding_of(data).encode(fixed.text))
         if fixed.applied:
-            print(f"{path}: {fixed.applied} finding{'s' * (fixed.applied != 1)} fixed", file=sys.stderr)
+            print(
+                f"{source.name}: {fixed.applied} finding{'s' * (fixed.applied != 1)} fixed", file=sys.stderr
+            )
         source = Source(source.name, fixed.text, source.sha256)
     return lint(source, options, config, limit=limit).findings()
 
