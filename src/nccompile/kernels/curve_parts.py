@@ -51,7 +51,7 @@ _SPACE = 3
 
 @kernel
 def curve_piece(kind: int, p: Floats, u0: float, u1: float, out: Floats) -> None:
-    """Writes the curve row (12,) of the part u0..u1 of a curve."""
+    """Writes the curve row (12,) of the part u0..u1 of a curve to out, which may be p."""
     out[:] = p
     if kind == ARC:
         out[3] = p[3] + p[4] * u0

@@ -17,9 +17,9 @@ import numpy as np
 
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows
+from nccompile.kernels.curve_parts import curve_piece
 from nccompile.kernels.curve_points import (
     ARC,
-    ELLIPSE,
     POLYNOMIAL,
     Floats,
     derivative,
@@ -29,7 +29,7 @@ from nccompile.kernels.curve_points import (
 )
 from nccompile.kernels.loops import way_share
 
-__all__ = ["cut_curve", "cut_curves", "offset_rows", "shares_along"]
+__all__ = ["cut_curves", "offset_rows", "shares_along"]
 
 _NO_RADIUS = 1e-9  # [mm] an offset arc of less is a point, its centre: a line without length
 _FINEST = 1.0 / 16777216  # of a curve: less of it that turns is a cusp
@@ -39,34 +39,13 @@ _MARGIN = 0.8  # of the tolerance that is used
 
 
 @kernel
-def cut_curve(kind: int, p: Floats, u0: float, u1: float, out: Floats) -> None:
-    """The curve row of the part u0..u1 of a curve into out, Shape (12,), which may be p."""
-    h = u1 - u0
-    if kind == ARC or kind == ELLIPSE:
-        at = 3 if kind == ARC else 5
-        start, sweep = float(p[at]), float(p[at + 1])
-        for c in range(12):
-            out[c] = p[c]
-        out[at] = start + sweep * u0
-        out[at + 1] = sweep * h
-        return
-    for c in range(3):
-        c0, c1 = float(p[4 * c]), float(p[4 * c + 1])
-        c2, c3 = float(p[4 * c + 2]), float(p[4 * c + 3])
-        out[4 * c] = c0 + u0 * (c1 + u0 * (c2 + u0 * c3))
-        out[4 * c + 1] = h * (c1 + u0 * (2.0 * c2 + u0 * 3.0 * c3))
-        out[4 * c + 2] = h * h * (c2 + 3.0 * c3 * u0)
-        out[4 * c + 3] = h * h * h * c3
-
-
-@kernel
 def cut_curves(kinds: Kinds, table: Floats, parts: Floats, shares: Floats, points: Floats) -> None:
     """Cuts the rows of a table to parts u0..u1, in place;  shares: Shape (m, 2), out: of their length;  points:
     Shape (m, 2), out: where they end."""
     for i in range(len(kinds)):
         shares[i, 0] = way_share(int(kinds[i]), table[i], float(parts[i, 0]))
         shares[i, 1] = way_share(int(kinds[i]), table[i], float(parts[i, 1]))
-        cut_curve(int(kinds[i]), table[i], float(parts[i, 0]), float(parts[i, 1]), table[i])
+        curve_piece(int(kinds[i]), table[i], float(parts[i, 0]), float(parts[i, 1]), table[i])
         x, y = point(int(kinds[i]), table[i], 1.0)
         points[i, 0] = x
         points[i, 1] = y

@@ -18,9 +18,9 @@ import numpy as np
 
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows
+from nccompile.kernels.curve_parts import curve_piece
 from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, tangent
 from nccompile.kernels.intersect import COMMON, intersections, place, slope
-from nccompile.kernels.offset import cut_curve
 
 __all__ = ["cut_piece", "join_offsets"]
 
@@ -53,7 +53,7 @@ def cut_piece(
     x0, y0 = place(int(kind[at]), row, ends[at], u0)
     x1, y1 = place(int(kind[at]), row, ends[at], u1)
     if curve[at] >= 0:
-        cut_curve(int(kind[at]), row, u0, u1, row)
+        curve_piece(int(kind[at]), row, u0, u1, row)
     p0 = float(part[at, 0])
     p1 = float(part[at, 1])
     if u0 > 0.0:
