@@ -9,7 +9,6 @@ All functions take one segment and plain floats; passes that work on many lines 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, hypot, pi
 from typing import TypeAlias
 
 import numpy as np
@@ -18,7 +17,7 @@ from nccompile.geometry.curve import ROW, Floats
 from nccompile.kernels import curves as kernels
 from nccompile.kernels.curves import ARC, ELLIPSE, NODES
 
-__all__ = ["Way", "arc_row", "curvature_at", "cut", "embed", "reparameter", "reverse", "tangent_at"]
+__all__ = ["Way", "curvature_at", "cut", "embed", "reparameter", "reverse", "tangent_at"]
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -64,20 +63,6 @@ def embed(plane: int, u: float, v: float, w: float) -> Vector:
     return u, v, w
 
 
-def arc_row(x0: float, y0: float, x1: float, y1: float, cx: float, cy: float, ccw: bool) -> list[float]:
-    """Centre, radius, start angle and sweep of the arc about (cx, cy), which is equally far from both ends.
-
-    The sweep comes from cross and dot product of both radii: a small one keeps all its digits.
-    """
-    ax, ay, bx, by = x0 - cx, y0 - cy, x1 - cx, y1 - cy
-    sweep = atan2(ax * by - ay * bx, ax * bx + ay * by)
-    if ccw and sweep <= 0.0:
-        sweep += 2.0 * pi
-    if not ccw and sweep >= 0.0:
-        sweep -= 2.0 * pi
-    return [cx, cy, hypot(ax, ay), atan2(ay, ax), sweep]
-
-
 class Way:
     """The arc length along one curve and its inverse: s in 0..1 of the length <-> u in 0..1."""
 
@@ -95,13 +80,6 @@ class Way:
         if share <= 0.0 or share >= 1.0:
             return min(max(share, 0.0), 1.0)
         return kernels.parameter(self.kind, self.row, self._u, self._s, self._count, share * self.length)
-
-    def share(self, u: float) -> float:
-        """The share 0..1 of the length in the plane up to u."""
-        if u <= 0.0 or u >= 1.0 or self.kind == ARC:
-            return min(max(u, 0.0), 1.0)
-        part = np.array(cut(self.kind, self.row.tolist(), 0.0, u))
-        return kernels.in_plane_length(self.kind, part) / self.length if self.length > 0.0 else u
 
 
 def tangent_at(kind: int, plane: int, row: Floats, u: float, rise: float) -> Vector:

@@ -22,6 +22,7 @@ from nccompile.kernels import kernel
 from nccompile.kernels.curves import (
     ARC,
     ELLIPSE,
+    POLYNOMIAL,
     curvature,
     in_plane_length,
     is_cusp,
@@ -31,7 +32,7 @@ from nccompile.kernels.curves import (
     tangent3,
 )
 
-__all__ = ["PARTS", "curve_parts", "curve_piece", "cut_curves"]
+__all__ = ["PARTS", "curve_parts", "curve_piece", "cut_curves", "way_share"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -66,6 +67,23 @@ def curve_piece(kind: int, p: Floats, u0: float, u1: float, out: Floats) -> None
             out[c + 1] = h * (p[c + 1] + u0 * (2.0 * p[c + 2] + u0 * 3.0 * p[c + 3]))
             out[c + 2] = h * h * (p[c + 2] + 3.0 * p[c + 3] * u0)
             out[c + 3] = h * h * h * p[c + 3]
+
+
+@kernel
+def way_share(kind: int, p: Floats, u: float) -> float:
+    """The share 0..1 of the length in its plane up to the parameter u of a curve; u itself, in 0..1, of a line."""
+    if u <= 0.0 or u >= 1.0 or kind <= ARC or kind > POLYNOMIAL:
+        return min(max(u, 0.0), 1.0)
+    part = p.copy()
+    if kind == ELLIPSE:
+        part[6] = float(p[6]) * u
+    else:
+        for c in range(3):
+            part[4 * c + 1] = float(p[4 * c + 1]) * u
+            part[4 * c + 2] = float(p[4 * c + 2]) * u * u
+            part[4 * c + 3] = float(p[4 * c + 3]) * u * u * u
+    whole = in_plane_length(kind, p)
+    return in_plane_length(kind, part) / whole if whole > 0.0 else u
 
 
 @kernel

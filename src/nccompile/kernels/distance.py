@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
-from nccompile.kernels.curve_points import ARC, ELLIPSE, POLYNOMIAL, Floats, derivative3, point3
-from nccompile.kernels.curves import in_plane_length
+from nccompile.kernels.curve_parts import way_share
+from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, derivative3, point3
 
 __all__ = ["deviations", "distance", "place_on", "sample_rows"]
 
@@ -37,21 +37,8 @@ def place_on(
     if plane == 3:
         return x, y, z
     third = 2 - plane  # XY leaves Z over, ZX leaves Y, YZ leaves X
-    way = u
     rise = float(b[third]) - float(a[third])
-    if kind != ARC and rise != 0.0 and 0.0 < u < 1.0:
-        part = np.zeros(12)
-        for i in range(12):
-            part[i] = p[i]
-        if kind == ELLIPSE:
-            part[6] = float(p[6]) * u
-        else:
-            for i in range(3):
-                part[4 * i + 1] = float(p[4 * i + 1]) * u
-                part[4 * i + 2] = float(p[4 * i + 2]) * u * u
-                part[4 * i + 3] = float(p[4 * i + 3]) * u * u * u
-        whole = in_plane_length(kind, p)
-        way = in_plane_length(kind, part) / whole if whole > 0.0 else u
+    way = way_share(kind, p, u) if rise != 0.0 else u
     w = float(a[third]) + way * rise
     if plane == 0:
         return x, y, w

@@ -16,11 +16,11 @@ import numpy as np
 
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows
+from nccompile.kernels.curve_parts import way_share
 from nccompile.kernels.curve_points import ARC, ELLIPSE, POLYNOMIAL, Floats, derivative, second, tangent
-from nccompile.kernels.curves import in_plane_length
 from nccompile.kernels.intersect import COMMON, intersections, own_crossing, place
 
-__all__ = ["intervals", "way_share", "without_loops"]
+__all__ = ["intervals", "without_loops"]
 
 _JOINT = 1e-7  # [mm] a common point this near to the end of a row is that end
 _LEVEL = 1e-6  # [mm] greatest difference in height at a crossing
@@ -196,23 +196,6 @@ def _crosses(
     elif comes == 2 and abs(leaves) == 1:
         comes = _parting(kinds, curve, table, ends, run, i, u, j, v, False, rays, other)
     return comes * leaves == -1
-
-
-@kernel
-def way_share(kind: int, p: Floats, u: float) -> float:
-    """The share 0..1 of a segment's length in the plane up to its parameter u."""
-    if u <= 0.0 or u >= 1.0 or kind <= ARC or kind > POLYNOMIAL:
-        return min(max(u, 0.0), 1.0)
-    part = p.copy()
-    if kind == ELLIPSE:
-        part[6] = float(p[6]) * u
-    else:
-        for c in range(3):
-            part[4 * c + 1] = float(p[4 * c + 1]) * u
-            part[4 * c + 2] = float(p[4 * c + 2]) * u * u
-            part[4 * c + 3] = float(p[4 * c + 3]) * u * u * u
-    whole = in_plane_length(kind, p)
-    return in_plane_length(kind, part) / whole if whole > 0.0 else u
 
 
 @kernel

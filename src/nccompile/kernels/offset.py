@@ -17,7 +17,7 @@ import numpy as np
 
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows
-from nccompile.kernels.curve_parts import curve_piece
+from nccompile.kernels.curve_parts import curve_piece, way_share
 from nccompile.kernels.curve_points import (
     ARC,
     POLYNOMIAL,
@@ -27,7 +27,6 @@ from nccompile.kernels.curve_points import (
     second,
     tangent,
 )
-from nccompile.kernels.loops import way_share
 
 __all__ = ["cut_curves", "offset_rows", "shares_along"]
 
