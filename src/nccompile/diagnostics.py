@@ -74,6 +74,13 @@ class Diagnostics:
         """Records a finding at a span of `source`."""
         self.add(Diagnostic(code, severity, message, span, source.name, help))
 
+    def report_line(
+        self, code: str, severity: Severity, message: str, source: Source, line: int, help: str = ""
+    ) -> None:
+        """Records a finding at the text of a line of `source`; past the limit the line is not even read."""
+        span = source.text_span(line) if self.counts[code] < self.limit else Span(line, 1, 2)
+        self.report(code, severity, message, source, span, help)
+
     @property
     def closing(self) -> str:
         """One line that totals the findings; empty if there are none."""

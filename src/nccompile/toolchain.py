@@ -184,7 +184,7 @@ class Compilation:
             yield chunk
 
     def _diagnose(self, code: str, severity: Severity, message: str, line: int, help: str) -> None:
-        self.diagnostics.report(code, severity, message, self.source, self.source.text_span(line), help)
+        self.diagnostics.report_line(code, severity, message, self.source, line, help)
 
     def _checked(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
         for chunk in check_marks(chunks, self.source, self.diagnostics):

@@ -83,12 +83,12 @@ def check_axes(chunk: Toolpath, machine: Machine, source: Source, diagnostics: D
         column = chunk.axes.index(letter)
         moving = np.flatnonzero(chunk.target[:, column] != chunk.starts()[:, column])
         if len(moving):
-            diagnostics.report(
+            diagnostics.report_line(
                 "NC401",
                 Severity.ERROR,
                 f"the machine {machine.name} has no axis {letter}",
                 source,
-                source.text_span(int(chunk.line[moving[0]])),
+                int(chunk.line[moving[0]]),
                 f"it has {' '.join(machine.axes)}; choose another machine file or leave the axis out",
             )
 
@@ -118,12 +118,12 @@ def check_travel(chunk: Toolpath, machine: Machine, source: Source, diagnostics:
         axis = machine.axes[letter]
         bound = "minimum" if under else "maximum"
         limit = (low if under else high)[column]
-        diagnostics.report(
+        diagnostics.report_line(
             "NC402",
             Severity.ERROR,
             f"axis {letter} reaches {reached:.6g} {axis.unit}, beyond its {bound} of {limit:g} {axis.unit}",
             source,
-            source.text_span(int(chunk.line[row])),
+            int(chunk.line[row]),
             f"the travel of {letter} on {machine.name} is {low[column]:g} to {high[column]:g} {axis.unit}"
             + (f", path coordinates are {shift[column]:g} {axis.unit} less" if shift[column] else ""),
         )

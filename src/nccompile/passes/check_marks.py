@@ -46,12 +46,12 @@ def check_marks(chunks: Iterable[Toolpath], source: Source, diagnostics: Diagnos
         for mark in [m for m in unseen if present & m]:
             code, what = unseen.pop(mark)
             line = int(chunk.line[np.flatnonzero(chunk.mark & mark)[0]])
-            diagnostics.report(
+            diagnostics.report_line(
                 "NC301",
                 Severity.WARNING,
                 f"{code} has no effect: no pass does {what}, the path runs as programmed",
                 source,
-                source.text_span(line),
+                line,
                 f"turn it on with -p {_PASSES[code]}",
             )
         yield chunk

@@ -31,12 +31,12 @@ def check_excess(
     bound = replace(settings, planner=LOOK_AHEAD)
     for chunk in chunks:
         for row, what in sorted(_excesses(chunk, bound).items()):
-            diagnostics.report(
+            diagnostics.report_line(
                 "NC501",
                 Severity.WARNING,
                 f"{what}, more than the machine file allows",
                 source,
-                source.text_span(int(chunk.line[row])),
+                int(chunk.line[row]),
                 "the planner look-ahead keeps the machine's limits",
             )
         yield chunk
