@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import accumulate
 from math import pi, tan
 
 import numpy as np
@@ -23,13 +24,14 @@ CENTRE_DECIMALS = 2
 """I and J have this many decimals more than the coordinates."""
 
 _STARTS = {
-    Mark.TOOL_LEFT: "G41",
-    Mark.TOOL_RIGHT: "G42",
-    Mark.SMOOTH: "G51",
-    Mark.ROUND: "G52",
-    Mark.LOOP: "G61",
+    int(Mark.TOOL_LEFT): "G41",
+    int(Mark.TOOL_RIGHT): "G42",
+    int(Mark.SMOOTH): "G51",
+    int(Mark.ROUND): "G52",
+    int(Mark.LOOP): "G61",
 }
-_STOPS = {Mark.TOOL_STOP: "G40", Mark.CORNER_STOP: "G50", Mark.LOOP_STOP: "G60"}
+_STOPS = {int(Mark.TOOL_STOP): "G40", int(Mark.CORNER_STOP): "G50", int(Mark.LOOP_STOP): "G60"}
+_WAITS = frozenset({Kind.DWELL, Kind.M_FUNCTION})
 
 
 @dataclass(frozen=True)
@@ -72,8 +74,6 @@ class _Writer:
         self.number = 0
         self.at: list[float] = []
         self.feed = self.accel = self.decel = 0.0
-        self.radius = 0.0
-        self.profile = 0
 
     def block(self, words: str) -> str:
         """A numbered block."""
@@ -95,27 +95,22 @@ class _Writer:
         for e, segment in enumerate(path.events.segment.tolist()):
             events.setdefault(segment, []).append(e)
         starts = path.starts()
-        for i, kind in enumerate(path.kind.tolist()):
+        for i, (kind, mark) in enumerate(zip(path.kind.tolist(), path.mark.tolist(), strict=True)):
             for text in self.form.notes.get(path.first + i, ()):
                 yield f"({_comment(text)})\n"
-            if kind in {Kind.DWELL, Kind.M_FUNCTION}:
+            if kind in _WAITS:
                 yield self._wait(path, events.get(i, ()))
                 continue
             if kind == Kind.SET_POSITION:
                 yield self._jump(path, i)
                 continue
-            yield from self._modal(path, i)
+            for bit, code in _STARTS.items():
+                if mark & bit:
+                    yield self.block(f"{code} {_word('D', float(path.radius[i]), self.form.decimals)}")
             yield from self._segment(path, i, kind, starts[i], events.get(i, ()))
             for bit, code in _STOPS.items():
-                if path.mark[i] & bit:
+                if mark & bit:
                     yield self.block(code)
-
-    def _modal(self, path: Toolpath, i: int) -> Iterator[str]:
-        """Start marks; the tool radius goes with them."""
-        for bit, code in _STARTS.items():
-            if path.mark[i] & bit:
-                self.radius = float(path.radius[i])
-                yield self.block(f"{code} {_word('D', self.radius, self.form.decimals)}")
 
     def _wait(self, path: Toolpath, events: Sequence[int]) -> str:
         e, table = events[0], path.events
@@ -140,21 +135,19 @@ class _Writer:
         row = None if path.curve[i] < 0 else path.curves.parameters[path.curve[i]]
         plane = Plane.XY if path.curve[i] < 0 else Plane(int(path.curves.plane[path.curve[i]]))
         steps = steps_of(kind, plane, row, start, target, self.form.tolerance)
-        shares = np.cumsum([step.share for step in steps])
+        shares = list(accumulate(step.share for step in steps))
         for at, step in enumerate(steps):
             switches = self._switches(path, events, shares, at)
             words = self._step(path, i, step, bool(switches))
             if words:
                 yield self.block(" ".join([*words, *switches]))
 
-    def _switches(
-        self, path: Toolpath, events: Sequence[int], shares: np.typing.NDArray[np.float64], at: int
-    ) -> list[str]:
+    def _switches(self, path: Toolpath, events: Sequence[int], shares: Sequence[float], at: int) -> list[str]:
         """H and O words of the switch points that lie on step `at` of a segment."""
-        low, high = (float(shares[at - 1]) if at else 0.0), float(shares[at])
+        low, high = (shares[at - 1] if at else 0.0), shares[at]
         words = []
         for e in events:
-            position = float(path.events.position[e]) * float(shares[-1])
+            position = float(path.events.position[e]) * shares[-1]
             last = at == len(shares) - 1
             if low <= position < high or (last and position >= low):
                 place = (position - low) / (high - low) if high > low else 0.0
