@@ -58,7 +58,6 @@ def nest(paths: Paths) -> Nesting:
     rings = [i for i in range(n) if paths.closed[i] and len(lines[i]) > 3]
     if not rings:
         return Nesting(parent, depth, area)
-    polygons = np.array([shapely.Polygon(np.column_stack([lines[i].real, lines[i].imag])) for i in rings])
     area[rings] = [_signed_area(lines[i]) for i in rings]
     low = np.array([[z.real.min(), z.imag.min()] for z in lines])
     high = np.array([[z.real.max(), z.imag.max()] for z in lines])
@@ -67,13 +66,18 @@ def nest(paths: Paths) -> Nesting:
     inside, outside = shapely.STRtree(boxes[ring]).query(boxes, predicate="covered_by")
     size = np.abs(area)
     pairs = (ring[outside] != inside) & (size[ring[outside]] > size[inside])
-    inside, outside = inside[pairs], outside[pairs]
+    inside, outside = inside[pairs], ring[outside[pairs]]
+    if not len(inside):
+        return Nesting(parent, depth, area)
+    within, probe = np.unique(inside, return_inverse=True)
+    around, polygon = np.unique(outside, return_inverse=True)
+    points = np.array([_spread(lines[i]) for i in within.tolist()])[probe]
+    shapes = (np.column_stack([lines[i].real, lines[i].imag]) for i in around.tolist())
+    polygons = np.array([shapely.Polygon(shape) for shape in shapes])
     shapely.prepare(polygons)
-    probes = np.array([_spread(z) for z in lines])
-    points = probes[inside]
-    votes = shapely.contains_xy(polygons[outside][:, None], points.real, points.imag).sum(axis=1)
+    votes = shapely.contains_xy(polygons[polygon][:, None], points.real, points.imag).sum(axis=1)
     held = votes >= 3
-    inside, holder = inside[held], ring[outside[held]]
+    inside, holder = inside[held], outside[held]
     np.add.at(depth, inside, 1)
     return Nesting(_followers(n, inside, holder, size), depth, area)
 
