@@ -7,9 +7,19 @@ from typing import NamedTuple
 
 from nccompile.lint.base import Edit
 from nccompile.lint.program import Program, first
-from nccompile.parser import Variable, Word
+from nccompile.parser import Block, Variable, Word
 
-__all__ = ["ENDS", "Loop", "Use", "jump_target", "loops", "variable_uses", "variable_written", "without"]
+__all__ = [
+    "ENDS",
+    "Loop",
+    "Use",
+    "is_jump",
+    "jump_target",
+    "loops",
+    "variable_uses",
+    "variable_written",
+    "without",
+]
 
 ENDS = {41: 40, 42: 40, 51: 50, 52: 50, 61: 60}
 """The end of each function by its start."""
@@ -57,6 +67,11 @@ def variable_written(program: Program, at: int) -> str | None:
     if word is None:
         return ""
     return word.value.name.lower() if isinstance(word.value, Variable) else None
+
+
+def is_jump(block: Block) -> bool:
+    """Whether a block has G20."""
+    return any(word.letter == "G" and word.value == 20.0 for word in block.words)
 
 
 def jump_target(program: Program, at: int) -> int | None:

@@ -7,6 +7,7 @@ from collections import defaultdict
 from nccompile.diagnostics import Diagnostics
 from nccompile.errors import UsageError
 from nccompile.lint.base import Edit, Fix
+from nccompile.lint.flow import is_jump
 from nccompile.lint.program import Program, first
 from nccompile.parser import Block, Word, parse
 from nccompile.source import Source
@@ -49,9 +50,7 @@ def numbering_fix(program: Program) -> Fix | None:
 
 def _target(block: Block) -> Word | None:
     """The word with the target of a jump; None if the block is no jump."""
-    if not any(word.letter == "G" and word.value == 20.0 for word in block.words):
-        return None
-    return first(block, "L")
+    return first(block, "L") if is_jump(block) else None
 
 
 def _new_number(source: Source, block: Block, target: Word, places: dict[int, list[int]], step: int) -> int:

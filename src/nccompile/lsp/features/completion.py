@@ -8,9 +8,10 @@ from heapq import nsmallest
 from lsprotocol import types
 
 from nccompile.decoder.tables import INSTRUCTIONS, LETTERS
+from nccompile.lint.flow import is_jump
 from nccompile.lsp.document import Document
 from nccompile.lsp.features.hover import instruction_text
-from nccompile.lsp.features.words import is_jump, number_of
+from nccompile.lsp.features.words import number_of
 from nccompile.lsp.text import Place
 from nccompile.parser import Block, Variable
 from nccompile.parser.lines import Unread

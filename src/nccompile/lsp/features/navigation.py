@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 from lsprotocol import types
 
+from nccompile.lint.flow import is_jump
 from nccompile.lsp.convert import range_of
 from nccompile.lsp.document import Document
-from nccompile.lsp.features.words import Spot, is_jump, number_of, spot_at
+from nccompile.lsp.features.words import Spot, number_of, spot_at
 from nccompile.lsp.text import Place
 from nccompile.parser import Block, Variable, Word
 from nccompile.source import Span

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from lsprotocol import types
 
 from nccompile.decoder.tables import INSTRUCTIONS
-from nccompile.lint.flow import ENDS
+from nccompile.lint.flow import ENDS, is_jump
 from nccompile.lsp.convert import line_range
 from nccompile.lsp.document import Document
-from nccompile.lsp.features.words import is_jump, number_of
+from nccompile.lsp.features.words import number_of
 from nccompile.parser import Block, Header
 
 __all__ = ["Part", "foldings", "parts_of", "symbols"]
@@ -45,7 +45,7 @@ def _sections(nodes: list[Block | Header | None], last: int) -> list[Part]:
     heads = []
     before_was_head = False
     for line, node in enumerate(nodes):
-        is_head = isinstance(node, Block) and bool(node.comments) and not node.words and node.number is None
+        is_head = isinstance(node, Block) and bool(node.comments) and node.is_empty
         if is_head and not before_was_head:
             assert isinstance(node, Block)
             text = node.comments[0].text.strip()

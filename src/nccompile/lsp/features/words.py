@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from nccompile.lint.flow import is_jump
 from nccompile.lsp.document import Document
 from nccompile.lsp.text import Place
 from nccompile.parser import Block, Variable, Word
 
-__all__ = ["Spot", "is_jump", "number_of", "spot_at"]
+__all__ = ["Spot", "number_of", "spot_at"]
 
 
 class Spot(NamedTuple):
@@ -31,11 +32,6 @@ class Spot(NamedTuple):
         if self.word.letter == "N" or (self.word.letter == "L" and is_jump(self.block)):
             return number_of(self.word)
         return None
-
-
-def is_jump(block: Block) -> bool:
-    """Whether a block has G20."""
-    return any(word.letter == "G" and word.value == 20.0 for word in block.words)
 
 
 def number_of(word: Word) -> int | None:
