@@ -38,7 +38,7 @@ from nccompile.threads import ahead
 from nccompile.toolpath import Toolpath
 from nccompile.toolpath.verify import verify_chain
 
-__all__ = ["Compilation", "JobTime", "Options", "machine_digest"]
+__all__ = ["Compilation", "Given", "JobTime", "Options", "machine_digest"]
 
 
 @dataclass(frozen=True)
@@ -66,6 +66,20 @@ class Options:
     measure: bool = False
 
 
+@dataclass(frozen=True)
+class Given:
+    """A toolpath as programmed that comes from elsewhere: from a drawing, or decoded before.
+
+    axes: those of its chunks;  chunks: at least one, from the start at each call.
+    """
+
+    axes: tuple[str, ...]
+    chunks: Callable[[], Iterator[Toolpath]]
+
+    def __iter__(self) -> Iterator[Toolpath]:
+        return self.chunks()
+
+
 @dataclass
 class JobTime:
     """Adds up the time of planned chunks on their way."""
@@ -89,10 +103,20 @@ class JobTime:
 class Compilation:
     """One program on its way through the stages; `diagnostics` and `time` fill while its chunks are pulled."""
 
-    def __init__(self, source: Source, options: Options, wanted: Callable[[], bool] | None = None) -> None:
-        """`wanted` is asked between jumps of the program; if it says no, decoding ends with `Cancelled`."""
+    def __init__(
+        self,
+        source: Source,
+        options: Options,
+        wanted: Callable[[], bool] | None = None,
+        given: Given | None = None,
+    ) -> None:
+        """`wanted` is asked between jumps of the program; if it says no, decoding ends with `Cancelled`.
+
+        given: what is compiled instead of decoding the source.
+        """
         self.source = source
         self._wanted = wanted
+        self._given = given
         self.options = options
         self.diagnostics = Diagnostics()
         self.time = JobTime()
@@ -162,13 +186,15 @@ class Compilation:
             time_law=self.time_law,
         )
 
-    def _program(self) -> Decoded:
+    def _program(self) -> Decoded | Given:
+        if self._given is not None:
+            return self._given
         return decode(self.source, self.options.decoder, self.diagnostics, self._wanted)
 
     def _verified(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
         return verify_chain(chunks) if self.options.verify else iter(chunks)
 
-    def _passed(self, program: Decoded) -> Iterator[Toolpath]:
+    def _passed(self, program: Iterable[Toolpath]) -> Iterator[Toolpath]:
         """The program behind all passes, each verified and printed if that was asked for."""
         options = self.options
         return options.passes.run(

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
@@ -25,11 +25,7 @@ from nccompile.importers.dxf.convert import ConvertOptions, NamedProgram, Result
 from nccompile.importers.dxf.job import Job
 from nccompile.importers.dxf.read import Drawing, ReadOptions, read_drawing
 from nccompile.source import Source
-from nccompile.toolchain import Compilation, Options
-
-if TYPE_CHECKING:
-    from nccompile.importers.dxf.assemble import Moves
-    from nccompile.toolpath import Toolpath
+from nccompile.toolchain import Compilation, Given
 
 __all__ = ["Import", "run"]
 
@@ -117,36 +113,13 @@ def _write_all(wanted: Import, result: Result, converting: ConvertOptions, found
         _draw(wanted.preview, wanted, result)
 
 
-class _Path:
-    """A toolpath in the place of a decoded program."""
-
-    axes = ("X", "Y", "Z")
-    header = ""
-
-    def __init__(self, moves: Moves) -> None:
-        self._moves = moves
-
-    def __iter__(self) -> Iterator[Toolpath]:
-        return self._moves.chunks()
-
-
-class _Drawn(Compilation):
-    """A compilation whose toolpath comes from a drawing: as it is, cubics included."""
-
-    def __init__(self, source: Source, options: Options, moves: Moves) -> None:
-        super().__init__(source, options)
-        self._moves = moves
-
-    def _program(self) -> Any:
-        return _Path(self._moves)
-
-
 def _write_queue(wanted: Import, program: NamedProgram, found: Diagnostics) -> None:
     """Plans the toolpath and writes it as an OutQueue; findings about the machine are the import's."""
     options = ProgramOptions().resolve(machine_of(wanted.machine))
     with wanted.drawing.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
-    compilation = _Drawn(Source(str(wanted.drawing), "", digest), options, program.moves)
+    path = Given(("X", "Y", "Z"), program.moves.chunks)  # as it is, cubics included
+    compilation = Compilation(Source(str(wanted.drawing), "", digest), options, given=path)
     compilation.write(wanted.place(program))
     for diagnostic in compilation.diagnostics:
         found.add(diagnostic)
