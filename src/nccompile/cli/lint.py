@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import StrEnum
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -74,9 +75,10 @@ def lint_programs(
     from nccompile.lint.output import FORMATS
 
     found = []
+    machines = cache(machine_of)
     with _without_collection():
         for path, (config, data) in texts.items():
-            options = chosen.resolve(machine_of(machine if machine is not None else config.machine))
+            options = chosen.resolve(machines(machine if machine is not None else config.machine))
             found.append(_check(path, data, options, config, limit, fix))
     out = sys.stderr if fix and STDIN in texts else sys.stdout
     out.write(_statistics(found) if statistics else FORMATS[form](found))
