@@ -110,6 +110,7 @@ def test_a_last_percent_warns_and_a_second_program_is_an_error() -> None:
 @pytest.mark.parametrize("text", ["", "\n\n", "% only", "% a\n(comment)\n"])
 def test_no_program(text: str) -> None:
     assert read(text)[1] == ["NC012"]
+    assert set(read(text + "\n%")[1]) == {"NC012"} | ({"NC008"} if "%" in text else set())
 
 
 @pytest.mark.parametrize(

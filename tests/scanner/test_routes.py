@@ -118,7 +118,7 @@ def test_samples_and_damaged_copies(sample: Path) -> None:
         b"% a\nG1 X1 F10\x1a\x00\x00\x1a",
         b"% a\nG1 X1 (\xe4) Y2 Q\n", b"% a\nG1 X1 (\xc3\xa4) Y\n", b"% a\nX1\x07\n", b"\xff\xfe%\x00",
         b"% a\n\xe4\xe4\rX1\x07", b"\x1a",
-        b"% a\nG1 X1 F1\n%\n", b"% a\nG1 X1 F1\n%\nrest\n", b"G1 X1 F1\n", b"% a\n" + b"X" * 70_000,
+        b"% a\nG1 X1 F1\n%\n", b"% a\n%\n", b"% a\nG1 X1 F1\n%\nrest\n", b"G1 X1 F1\n", b"% a\n" + b"X" * 70_000,
         b"% a\nG1 F1\nX1" + b" " * 70_000 + b"Y1",
         b"% a\nG1 F1\nX" + b"0" * 66_000 + b"1\nX2", b"% a\n" + b"Dear sir,\n" * 1500,
         b"% a\nG1 F1" + b" X1" * 30_000,

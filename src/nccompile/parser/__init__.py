@@ -158,6 +158,7 @@ class Reader:
                 "NC008", Severity.WARNING, "% has no meaning at the end of a program", self.source, header.span,
                 "remove the line",
             )  # fmt: skip
+            self.finish()
         return False
 
 
