@@ -31,6 +31,7 @@ from nccompile.kernels.curves import (
     speed_extremes,
     tangent3,
 )
+from nccompile.kernels.planes import SPACE, plane_axes
 
 __all__ = ["PARTS", "curve_parts", "curve_piece", "cut_curves", "way_share"]
 
@@ -47,7 +48,6 @@ _ALIKE = 0.85  # velocities inside a part differ by less than this ratio
 _SHORTEST = 1e-9  # mm: the length below which no part is cut
 _PIECES = 8  # a curve that is no arc starts with so many equal parts where the angle decides
 _LEAST = 1e-12  # of the parameter: parts are not halved below this
-_SPACE = 3
 
 
 @kernel
@@ -325,15 +325,8 @@ def _end(
     for a in range(axes):
         out[a] = start[a] + (target[a] - start[a]) * share
     x, y, z = point3(kind, p, 1.0)
-    if plane == _SPACE:
-        out[0] = x
-        out[1] = y
-        out[2] = z
-        return
-    first, second = 0, 1
-    if plane == 1:
-        first, second = 2, 0
-    elif plane == 2:
-        first, second = 1, 2
+    first, second = plane_axes(plane)
     out[first] = x
     out[second] = y
+    if plane == SPACE:
+        out[2] = z

@@ -7,15 +7,14 @@ import numpy.typing as npt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.curve_parts import curve_piece
-from nccompile.kernels.curves import parameter, point, point3, tabulate
+from nccompile.kernels.curves import parameter, point3, tabulate
+from nccompile.kernels.planes import SPACE, plane_axes
 
 __all__ = ["cut_rows"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 Kinds = npt.NDArray[np.uint8]
-
-_SPACE = 3
 
 
 @kernel
@@ -54,19 +53,10 @@ def cut_rows(
         u1 = 1.0 if whole else parameter(int(kind[j]), p, nodes_u, nodes_s, nodes, p1[i] * nodes_s[nodes - 1])
         u_end = u1
         curve_piece(int(kind[j]), p, u0, u1, out_parameters[i])
-        if whole:
-            continue
-        if plane[c] == _SPACE:
+        if not whole:
             x, y, z = point3(int(kind[j]), p, u1)
-            out_target[i, 0] = x
-            out_target[i, 1] = y
-            out_target[i, 2] = z
-        else:
-            x, y = point(int(kind[j]), p, u1)
-            first, second = 0, 1
-            if plane[c] == 1:
-                first, second = 2, 0
-            elif plane[c] == 2:
-                first, second = 1, 2
+            first, second = plane_axes(int(plane[c]))
             out_target[i, first] = x
             out_target[i, second] = y
+            if plane[c] == SPACE:
+                out_target[i, 2] = z

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.curves import max_curvature
+from nccompile.kernels.planes import least_in_plane, moves
 
 __all__ = ["jerk_limits", "rest_caps"]
 
@@ -17,7 +18,6 @@ Ints = npt.NDArray[np.int32]
 Kinds = npt.NDArray[np.uint8]
 
 _SET_POSITION = 5
-_SPACE = 3
 
 _BEND = 0.5  # on curves: greatest share of an axis's jerk for following the curve,
 _ALONG = 0.35  # least share for changing the path acceleration
@@ -44,24 +44,14 @@ def jerk_limits(
             continue
         run = float(length[i])
         row = int(curve[i])
-        first = second = third = -1
-        if row >= 0:
-            first, second = 0, 1
-            if plane[row] == 1:
-                first, second = 2, 0
-            elif plane[row] == 2:
-                first, second = 1, 2
-            elif plane[row] == _SPACE:
-                third = 2
+        where = int(plane[row]) if row >= 0 else -1
         most = float(jerk[i])
         for a in range(axes):
             size = abs(target[i, a] - start[i, a]) / run
-            if size > 0.0 and a != first and a != second and a != third:
+            if size > 0.0 and not moves(where, a):
                 most = min(most, float(j_axis[a]) / float(size))
         if row >= 0:
-            least = min(float(j_axis[first]), float(j_axis[second]))
-            if third >= 0:
-                least = min(least, float(j_axis[third]))
+            least = least_in_plane(j_axis, where)
             bend = max_curvature(int(kind[i]), parameters[row])
             if least < inf:
                 if 0.0 < bend < inf:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.curves import max_curvature, tangent3
+from nccompile.kernels.planes import SPACE, in_plane_share, least_in_plane, moves, plane_axes
 from nccompile.kernels.timelaw import jerk_time, law_times
 
 __all__ = ["durations", "look_ahead", "row_limits", "third_order_durations"]
@@ -22,13 +23,39 @@ Ints = npt.NDArray[np.int32]
 Kinds = npt.NDArray[np.uint8]
 
 _POSITIONING, _SET_POSITION = 0, 5
-_SPACE = 3
 
 _S_SLOPE = 1.875  # greatest slope of 10 w³ - 15 w⁴ + 6 w⁵
 _S_BEND = 5.773502691896258  # greatest second derivative of it, 10 / sqrt(3)
 
 _TANGENTIAL = 0.6  # on curves: share of an axis's acceleration that changing the path velocity has at least;
 #                    0.8 is left for following the curve, since 0.6² + 0.8² = 1 and both are at right angles
+
+
+@kernel
+def _bend_limits(
+    bend: float,
+    share: float,
+    v_plane: float,
+    a_plane: float,
+    creep: float,
+    peak: float,
+    feed: float,
+    programmed: float,
+) -> tuple[float, float]:
+    """Greatest path velocity and acceleration on a curve, by the least limits of the axes that it moves.
+
+    bend: greatest curvature of the path;  share: in-plane length over path length;  programmed: acceleration.
+    """
+    v_top = v_plane / share
+    # What the bend leaves at the row's feed: _TANGENTIAL where it is sharp, nearly all where it is slight.
+    across = feed * feed * bend / a_plane
+    along = max(sqrt(max(1.0 - across * across, 0.0)), _TANGENTIAL)
+    a_top = along * a_plane / (share * peak)
+    if bend > 0.0:
+        wanted = min(programmed, a_top) * peak * share
+        across = sqrt(max(a_plane * a_plane - wanted * wanted, 0.0))
+        v_top = min(v_top, max(sqrt(across / bend), creep))
+    return v_top, a_top
 
 
 @kernel
@@ -60,20 +87,10 @@ def row_limits(
         run = float(length[i])
         bits = int(profile[i])
         row = int(curve[i])
-        first = second = third = -1
-        if row >= 0:
-            first, second = 0, 1
-            if plane[row] == 1:
-                first, second = 2, 0
-            elif plane[row] == 2:
-                first, second = 1, 2
-            elif plane[row] == _SPACE:
-                third = 2
-        rapid_top = inf
-        v_top = inf
-        a_top = inf
+        where = int(plane[row]) if row >= 0 else -1
+        rapid_top = v_top = a_top = inf
         for a in range(axes):
-            if a == first or a == second or a == third:
+            if moves(where, a):
                 continue
             slope = (float(target[i, a]) - float(start[i, a])) / run
             if slope == 0.0:
@@ -96,41 +113,27 @@ def row_limits(
         if kind[i] == _POSITIONING and rapid_top < inf:
             feed[i] = min(rapid_top, v_top)
         if row >= 0:
-            share = 1.0
-            other = 3 - first - second
-            if third < 0 and not (bits >> other) & 1:
-                linear = float(t_end[i, other])
-                share = sqrt(max(1.0 - linear * linear, 0.0))
             p = parameters[row]
+            first, second = plane_axes(where)
+            across = 2 - where
+            share = 1.0
+            if where != SPACE and not (bits >> across) & 1:
+                share = in_plane_share(float(start[i, across]), float(target[i, across]), run)
             for end in range(2):
                 dx, dy, dz = tangent3(int(kind[i]), p, float(end))
                 slopes = t_end if end else t_start
-                if third < 0:
-                    slopes[i, first] = share * dx
-                    slopes[i, second] = share * dy
-                else:
-                    slopes[i, 0] = dx
-                    slopes[i, 1] = dy
+                slopes[i, first] = share * dx
+                slopes[i, second] = share * dy
+                if where == SPACE:
                     slopes[i, 2] = dz
-            a_plane = min(float(a_axis[first]), float(a_axis[second]))
-            v_plane = min(float(v_axis[first]), float(v_axis[second]))
-            if third >= 0:
-                a_plane = min(a_plane, float(a_axis[2]))
-                v_plane = min(v_plane, float(v_axis[2]))
             if share > 0.0 and straight[i] == 0:
-                v_top = min(v_top, v_plane / share)
-                bend = share * share * max_curvature(int(kind[i]), p)
-                # What the bend leaves at the row's feed: _TANGENTIAL where it is sharp, nearly all where it is slight.
-                across = float(feed[i]) * float(feed[i]) * bend / a_plane
-                along = max(sqrt(max(1.0 - across * across, 0.0)), _TANGENTIAL)
-                a_top = min(a_top, along * a_plane / (share * peak))
-                wanted = min(max(accel[i], decel[i]), a_top) * peak * share
-                if bend > 0.0:
-                    slow = min(float(creep[first]), float(creep[second]))
-                    if third >= 0:
-                        slow = min(slow, float(creep[third]))
-                    across = sqrt(max(a_plane * a_plane - wanted * wanted, 0.0))
-                    v_top = min(v_top, max(sqrt(across / bend), slow))
+                v_bend, a_bend = _bend_limits(
+                    share * share * max_curvature(int(kind[i]), p), share, least_in_plane(v_axis, where),
+                    least_in_plane(a_axis, where), least_in_plane(creep, where), peak, float(feed[i]),
+                    min(max(accel[i], decel[i]), a_top),
+                )  # fmt: skip
+                v_top = min(v_top, v_bend)
+                a_top = min(a_top, a_bend)
         v_limit[i] = v_top
         accel[i] = min(accel[i], a_top)
         decel[i] = min(decel[i], a_top)

@@ -23,6 +23,7 @@ import numpy.typing as npt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.curves import derivative3, second3, tangent3
+from nccompile.kernels.planes import SPACE, in_plane_share, plane_axes
 
 __all__ = ["backward", "bend_at", "forward", "ramps", "slopes"]
 
@@ -30,7 +31,6 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 Kinds = npt.NDArray[np.uint8]
 
-_SPACE = 3
 _CONSTRAINTS = 20
 _STILL = 1e-13  # speed over second derivative below which a curve stands: a cusp at its end (`tangent3`)
 _FLOOR = 1e-3  # share of U that a row always has to accelerate or brake with, so that nothing can get stuck
@@ -53,15 +53,11 @@ def bend_at(kind: int, plane: int, p: Floats, u: float, share: float, d1: Floats
     if size2 > _STILL * _STILL * (x2 * x2 + y2 * y2 + z2 * z2):
         along = (x * x2 + y * y2 + z * z2) / size2
         bend = share * share / size2
-    if plane == _SPACE:
+    if plane == SPACE:
         d1[0], d1[1], d1[2] = tx, ty, tz
         d2[0], d2[1], d2[2] = (x2 - along * x) * bend, (y2 - along * y) * bend, (z2 - along * z) * bend
         return
-    first, second = 0, 1
-    if plane == 1:
-        first, second = 2, 0
-    elif plane == 2:
-        first, second = 1, 2
+    first, second = plane_axes(plane)
     d1[first] = share * tx
     d1[second] = share * ty
     d2[first] = (x2 - along * x) * bend
@@ -97,10 +93,8 @@ def slopes(
             continue
         across = int(plane[c])
         flat = 1.0
-        if across != _SPACE:
-            third = 2 - across
-            rise = (target[j, third] - start[j, third]) / length[j]
-            flat = sqrt(max(1.0 - rise * rise, 0.0))
+        if across != SPACE:
+            flat = in_plane_share(start[j, 2 - across], target[j, 2 - across], length[j])
         p = parameters[c]
         bend_at(int(kind[j]), across, p, 0.0, flat, d1[j, 0], d2[j, 0])
         bend_at(int(kind[j]), across, p, 1.0, flat, d1[j, 1], d2[j, 1])

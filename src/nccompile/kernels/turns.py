@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.curves import max_curvature
+from nccompile.kernels.planes import SPACE, in_plane_share
 from nccompile.kernels.reach import bend_at
 
 __all__ = ["turn_limits"]
@@ -26,7 +27,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 Kinds = npt.NDArray[np.uint8]
 
-_SET_POSITION, _SPACE = 5, 3
+_SET_POSITION = 5
 
 
 @kernel
@@ -69,17 +70,15 @@ def turn_limits(
         behind[:] = 0.0
         c = int(curve[j])
         if c >= 0:
-            share = 1.0
-            if plane[c] != _SPACE:
-                third = 2 - int(plane[c])
-                rise = (target[j, third] - start[j, third]) / length[j]
-                share = sqrt(max(1.0 - rise * rise, 0.0))
+            across, share = int(plane[c]), 1.0
+            if across != SPACE:
+                share = in_plane_share(start[j, 2 - across], target[j, 2 - across], length[j])
             p = parameters[c]
             bend = share * share * max_curvature(int(kind[j]), p)
             if accel < bend * v_limit[j] * v_limit[j]:
                 v_limit[j] = sqrt(accel / bend)
-            bend_at(int(kind[j]), int(plane[c]), p, 0.0, share, slope, ahead)
-            bend_at(int(kind[j]), int(plane[c]), p, 1.0, share, slope, behind)
+            bend_at(int(kind[j]), across, p, 0.0, share, slope, ahead)
+            bend_at(int(kind[j]), across, p, 1.0, share, slope, behind)
         if last >= 0:
             v = inf
             if _chord2(t_end[last], t_start[j]) > chord * chord:
