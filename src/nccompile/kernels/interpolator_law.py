@@ -15,13 +15,13 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 from nccompile.kernels.curves import tabulate
 from nccompile.kernels.interpolator_rows import (
-    CONTINUES, DWELL, ELLIPSE, EVENT, GO, IPO_ACCEL, IPO_CONSTANT, IPO_DECEL, LAST_SWITCH, LAW, LINE_NO, M_ROW,
-    NODES, OVERRIDE, POLYNOMIAL, QUICK, ROW, RUNNING, S0, SET_POSITION, SLOW, STOPPING, SWITCHES, SWITCH_NUMBERS,
-    T1, T2, T3, TABLE_ROW, TAU, V0, V1, VP, WANTED, Floats, Inputs, Rows, S, State, V, limit_ends,
+    CONTINUES, DWELL, ELLIPSE, EVENT, GO, IPO_ACCEL, IPO_CONSTANT, IPO_DECEL, LAST_SWITCH, LAW, LINE_NO, M_FUNCTION,
+    M_ROW, NODES, OVERRIDE, POLYNOMIAL, QUICK, ROW, RUNNING, S0, SET_POSITION, SLOW, STOPPING, SWITCHES,
+    SWITCH_NUMBERS, T1, T2, T3, TABLE_ROW, TAU, V0, V1, VP, WANTED, Floats, Inputs, Rows, S, State, V, limit_ends,
 )  # fmt: skip
 from nccompile.kernels.timelaw import law_times
 
-__all__ = ["arrive", "begin", "command", "fire", "phase"]
+__all__ = ["arrive", "begin", "command", "finish", "fire", "phase", "take_law"]
 
 
 @kernel
@@ -57,9 +57,17 @@ def begin(rows: Rows, row: int, s0: float, v0: float, inputs: Inputs, f: Floats,
     f[WANTED] = v_end
     if inputs.single_step == 1 and (rows.profile[row] >> CONTINUES) & 1 == 0:
         v_end = 0.0
-    v_top = min(f[OVERRIDE] * rows.feed[row], rows.v_limit[row])
-    f[T1], f[T2], f[T3], f[VP], f[V1] = law_times(length, v0, v_top, v_end, rows.accel[row], decel)
-    f[V0] = v0
+    take_law(length, v0, rows.feed[row], rows.v_limit[row], v_end, rows.accel[row], decel, f)
+
+
+@kernel
+def take_law(
+    length: float, v0: float, feed: float, v_limit: float, v_end: float, accel: float, decel: float, f: Floats
+) -> None:
+    """Loads the law over `length` from v0 to v_end, as fast as the feed with its override and v_limit allow."""
+    v_top = min(f[OVERRIDE] * feed, v_limit)
+    f[T1], f[T2], f[T3], f[VP], f[V1] = law_times(length, v0, v_top, v_end, accel, decel)
+    f[V] = f[V0] = v0
 
 
 @kernel
@@ -102,6 +110,18 @@ def fire(
         e += 1
     i[EVENT] = e
     return logged
+
+
+@kernel
+def finish(
+    rows: Rows, row: int, cycle: int, i: State, here: Floats, log: npt.NDArray[np.int64], logged: int
+) -> int:  # fmt: skip
+    """The set position comes to the end of a row: fires its last switches; returns the new fill of the log."""
+    kind = rows.kind[row]
+    if kind != DWELL and kind != M_FUNCTION:
+        for a in range(len(here)):
+            here[a] = rows.target[row, a]
+    return fire(rows, row, rows.length[row], cycle, i, log, logged)
 
 
 @kernel

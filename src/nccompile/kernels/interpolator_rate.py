@@ -16,7 +16,7 @@ from math import sqrt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.interpolator_rows import Rows
-from nccompile.kernels.timelaw import jerk_distance, jerk_time, jerk_velocity
+from nccompile.kernels.timelaw import constant_jerk, jerk_distance, jerk_velocity
 
 __all__ = ["FITS", "OPEN", "TOO_SHARP", "change_fits", "find_change", "plan_time", "rate_at", "time_at"]
 
@@ -128,8 +128,7 @@ def change_fits(
     the plan fits: at rest the rate may be anything.
     """
     v1, a1 = rows.v_end[row], rows.a_end[row]
-    total = jerk_time(rows.length[row], v0, v1, a0, a1)
-    j = (a1 - a0) / total if total > 0.0 else 0.0
+    total, j = constant_jerk(rows.length[row], v0, v1, a0, a1)
     end = 2.0 * ramp + level
     tau += r0 * hold
     gone = -tau  # the plan's time at the start of the row, counted from now
@@ -154,8 +153,7 @@ def change_fits(
                 return OPEN, row, 0.0, 0.0, 0.0
             gone += total
             v0, a0, v1, a1 = v1, a1, rows.v_end[row], rows.a_end[row]
-            total = jerk_time(rows.length[row], v0, v1, a0, a1)
-            j = (a1 - a0) / total if total > 0.0 else 0.0
+            total, j = constant_jerk(rows.length[row], v0, v1, a0, a1)
             limit, up, down, most = rows.v_limit[row], rows.accel[row], rows.decel[row], rows.jerk[row]
             if not (
                 _inside(v0, a0, j, before, before1, before2, limit, up, down, most)
@@ -189,8 +187,7 @@ def find_change(
     r'' = J / v.  To a rate above 1 the way back to 1 has to fit after it, two cycles later.
     """
     v1, a1 = rows.v_end[row], rows.a_end[row]
-    total = jerk_time(rows.length[row], v0, v1, a0, a1)
-    j = (a1 - a0) / total if total > 0.0 else 0.0
+    _, j = constant_jerk(rows.length[row], v0, v1, a0, a1)
     v = max(jerk_velocity(tau, v0, a0, j), v0, v1)
     if v <= 0.0:
         return TOO_SHARP, 0.0, 0.0

@@ -25,7 +25,6 @@ State = npt.NDArray[np.int64]
 
 # Segment kinds, as toolpath.Kind numbers them.
 POSITIONING, LINE, ARC, ELLIPSE, POLYNOMIAL, SET_POSITION, DWELL, M_FUNCTION = 0, 1, 2, 3, 4, 5, 6, 7
-SPACE = 3
 
 # SMC_INT_STATUS (SoftMotion §6.2.8)
 IPO_INIT, IPO_ACCEL, IPO_CONSTANT, IPO_DECEL, IPO_FINISHED, IPO_WAIT = 1, 2, 3, 4, 5, 6

@@ -19,25 +19,22 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
-from nccompile.kernels.interpolator_law import arrive, fire
+from nccompile.kernels.interpolator_law import arrive, finish
 from nccompile.kernels.interpolator_rate import (
-    FITS,
-    OPEN,
-    TOO_SHARP,
-    find_change,
-    plan_time,
-    rate_at,
-    time_at,
+    FITS, OPEN, TOO_SHARP, find_change, plan_time, rate_at, time_at,
 )  # fmt: skip
 from nccompile.kernels.interpolator_rows import (
-    A0, A1, GO, IPO_ACCEL, IPO_CONSTANT, IPO_DECEL, JERK, MODE, PHASE, PHASES, PHASE_COUNT, PLANNED, PLAN_A, PLAN_V,
-    RATE, RATE_BY, RATE_FROM, RATE_LEVEL, RATE_RAMP, RATE_TIME, ROW, RUNNING, S0, SCALED, SLOW, STARVED, STOPPED,
-    STOPPING, T1, T2, T3, TABLE, TAU, V0, V1, A, Floats, Inputs, Rows, S, State, V,
+    A0, A1, GO, IPO_ACCEL, IPO_CONSTANT, IPO_DECEL, JERK, MODE, PHASE, PHASES, PHASE_COUNT, PLANNED, PLAN_A,
+    PLAN_V, RATE, RATE_BY, RATE_FROM, RATE_LEVEL, RATE_RAMP, RATE_TIME, ROW, RUNNING, S0, SCALED, SLOW, STARVED,
+    STOPPED, STOPPING, T1, T2, T3, TABLE, TAU, V0, V1, A, Floats, Inputs, Rows, S, State, V,
 )  # fmt: skip
 from nccompile.kernels.interpolator_stop import plan_step, plan_stop
-from nccompile.kernels.timelaw import jerk_distance, jerk_time, jerk_velocity
+from nccompile.kernels.timelaw import constant_jerk, jerk_state, jerk_velocity
 
-__all__ = ["begin_planned", "command_third", "leave", "pace", "phase_third", "run_table", "set_off"]
+__all__ = [
+    "begin_planned", "command_third", "leave", "pace", "phase_third", "run_table", "sense", "set_off",
+    "take_plan",
+]  # fmt: skip
 
 _TRIES = 10
 """Changes of the rate that are tried in a cycle, each 0.7 times as sharp as the one before."""
@@ -55,15 +52,23 @@ _LANDING = 1e-9
 @kernel
 def begin_planned(rows: Rows, row: int, s: float, f: Floats, i: State) -> None:
     """The plan's constant jerk of a row, at path length s of it."""
-    v0, a0, v1, a1 = f[PLAN_V], f[PLAN_A], rows.v_end[row], rows.a_end[row]
-    total = jerk_time(rows.length[row], v0, v1, a0, a1)
-    jerk = (a1 - a0) / total if total > 0.0 else 0.0
-    tau = time_at(s, v0, a0, jerk, total) if s > 0.0 else 0.0
-    f[T1] = f[T3] = f[S0] = 0.0
-    f[T2], f[V0], f[A0], f[V1], f[A1], f[JERK] = total, v0, a0, v1, a1, jerk
-    f[TAU], f[S] = tau, s
-    f[V], f[A] = jerk_velocity(tau, v0, a0, jerk), a0 + tau * jerk
+    take_plan(rows.length[row], rows.v_end[row], rows.a_end[row], f)
+    if s > 0.0:
+        v0, a0, jerk = f[V0], f[A0], f[JERK]
+        tau = time_at(s, v0, a0, jerk, f[T2])
+        f[TAU], f[S] = tau, s
+        f[V], f[A] = jerk_velocity(tau, v0, a0, jerk), a0 + tau * jerk
     i[RUNNING] = 1
+
+
+@kernel
+def take_plan(length: float, v1: float, a1: float, f: Floats) -> None:
+    """Loads the plan's constant jerk of a row of `length` to the end (v1, a1), at the row's start."""
+    v0, a0 = f[PLAN_V], f[PLAN_A]
+    f[TAU] = f[T1] = f[T3] = f[S0] = f[S] = 0.0
+    f[T2], f[JERK] = constant_jerk(length, v0, v1, a0, a1)
+    f[V], f[A] = v0, a0
+    f[V0], f[A0], f[V1], f[A1] = v0, a0, v1, a1
 
 
 @kernel
@@ -222,19 +227,9 @@ def _choose_rate(rows: Rows, inputs: Inputs, tail: int, complete: int, f: Floats
     if wanted > 1.0 and top > 0.0:
         wanted = max(1.0, min(wanted, rows.v_limit[row] / top))
     if rate > 1.0:
+        cycle = inputs.cycle
         found, ramp, level = find_change(
-            rows,
-            row,
-            f[TAU],
-            f[PLAN_V],
-            f[PLAN_A],
-            tail,
-            complete,
-            inputs.cycle,
-            rate,
-            1.0,
-            inputs.cycle,
-            _TRIES,
+            rows, row, f[TAU], f[PLAN_V], f[PLAN_A], tail, complete, cycle, rate, 1.0, cycle, _TRIES
         )
         if found == OPEN and inputs.patient == 1:
             return OPEN
@@ -286,6 +281,12 @@ def phase_third(f: Floats, i: State) -> int:
     if i[MODE] == SCALED and f[RATE_TIME] >= 0.0:
         r, r1, _ = rate_at(f[RATE_TIME], f[RATE_FROM], f[RATE_BY], f[RATE_RAMP], f[RATE_LEVEL])
         a = r * r * a + r1 * f[V]
+    return sense(a)
+
+
+@kernel
+def sense(a: float) -> int:
+    """The status of a third-order row that runs with the acceleration a."""
     if a == 0.0:
         return IPO_CONSTANT
     return IPO_ACCEL if a > 0.0 else IPO_DECEL
@@ -305,8 +306,8 @@ def run_table(
         tau = min(f[TAU] + left, f[T2])
         left -= tau - f[TAU]
         f[TAU] = tau
-        s = f[S0] + jerk_distance(tau, f[V0], f[A0], f[JERK])
-        f[V], f[A] = jerk_velocity(tau, f[V0], f[A0], f[JERK]), f[A0] + tau * f[JERK]
+        way, f[V], f[A] = jerk_state(tau, f[V0], f[A0], f[JERK])
+        s = f[S0] + way
         ends = tau >= f[T2]
         last = ends and i[PHASE] + 1 >= i[PHASE_COUNT]
         row = i[ROW]
@@ -314,9 +315,7 @@ def run_table(
             length = rows.length[row]
             if last and s - length <= _LANDING * (1.0 + length):
                 break
-            logged = fire(rows, row, length, cycle, i, log, logged)
-            for axis in range(here.shape[0]):
-                here[axis] = rows.target[row, axis]
+            logged = finish(rows, row, cycle, i, here, log, logged)
             covered += length - f[S]
             leave(rows, row, f)
             f[S] = 0.0
@@ -333,9 +332,7 @@ def run_table(
         if not _next_phase(f, i):
             if rows.length[row] - s <= _LANDING * (1.0 + rows.length[row]):
                 covered += rows.length[row] - s
-                logged = fire(rows, row, rows.length[row], cycle, i, log, logged)
-                for axis in range(here.shape[0]):
-                    here[axis] = rows.target[row, axis]
+                logged = finish(rows, row, cycle, i, here, log, logged)
                 leave(rows, row, f)
                 f[S] = 0.0
                 i[ROW] = row + 1

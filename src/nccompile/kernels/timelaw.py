@@ -27,10 +27,13 @@ __all__ = [
     "PARABOLIC",
     "SIGMOID",
     "TRAPEZOID",
+    "constant_jerk",
     "jerk_distance",
+    "jerk_state",
     "jerk_time",
     "jerk_velocity",
     "law_distance",
+    "law_state",
     "law_times",
     "law_velocity",
     "peak_factor",
@@ -164,9 +167,30 @@ def jerk_time(length: float, v0: float, v1: float, a0: float, a1: float) -> floa
 
 
 @kernel
+def constant_jerk(length: float, v0: float, v1: float, a0: float, a1: float) -> tuple[float, float]:
+    """The time [s] of `jerk_time` and the jerk [mm/s³]; 0 and 0 where there is no way."""
+    total = jerk_time(length, v0, v1, a0, a1)
+    return total, (a1 - a0) / total if total > 0.0 else 0.0
+
+
+@kernel
 def jerk_distance(t: float, v0: float, a0: float, jerk: float) -> float:
     """Distance covered `t` seconds after the start of a constant jerk."""
     return t * (v0 + t * (0.5 * a0 + t * jerk / 6.0))
+
+
+@kernel
+def jerk_state(t: float, v0: float, a0: float, jerk: float) -> tuple[float, float, float]:
+    """Distance, velocity and acceleration `t` seconds after the start of a constant jerk."""
+    return jerk_distance(t, v0, a0, jerk), jerk_velocity(t, v0, a0, jerk), a0 + t * jerk
+
+
+@kernel
+def law_state(
+    law: int, t: float, t1: float, t2: float, t3: float, v0: float, vp: float, v1: float
+) -> tuple[float, float]:
+    """Distance and velocity `t` seconds after the start of a law."""
+    return law_distance(law, t, t1, t2, t3, v0, vp, v1), law_velocity(law, t, t1, t2, t3, v0, vp, v1)
 
 
 @kernel
