@@ -70,7 +70,7 @@ def advance(
     f_before = f.copy()
     i_before = i.copy()
     here_before = here.copy()
-    plain = i[STARTED] == 1 and inputs.stop == GO and inputs.single_step == 0
+    plain = inputs.stop == GO and inputs.single_step == 0
     watched = complete == 0 and inputs.patient == 0  # rows may run out
     while done < n and reason == RAN:
         if 2 * logged > log.shape[0]:
