@@ -17,7 +17,7 @@ velocities that cannot be braked within it before, wherever that is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -33,7 +33,7 @@ from nccompile.passes.velocity.settings import PlanSettings
 from nccompile.toolpath.columns import Floats, Ints, Kind, Toolpath
 from nccompile.toolpath.lengths import path_lengths
 
-__all__ = ["profile", "smoothest"]
+__all__ = ["JerkPlanner", "profile"]
 
 _BLOCK = 8192
 """Rows that are planned at a time; twice as many where nothing settles."""
@@ -45,17 +45,9 @@ _UNBOUND = 1e12
 """Path jerk where no axis limits it [mm/s³]."""
 
 
-def smoothest(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpath]:
-    """Planned chunks of the path."""
-    stage = _Stage(settings)
-    for chunk in chunks:
-        yield from stage.feed(chunk)
-    yield from stage.finish()
-
-
 @dataclass
-class _Stage:
-    """Holds the rows back that are not settled."""
+class JerkPlanner:
+    """The window of the planner: holds the rows back that are not settled."""
 
     settings: PlanSettings
     _held: list[Toolpath] = field(default_factory=list, init=False)

@@ -10,7 +10,7 @@ method and what a row keeps back because the limits are asked only where rows me
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,7 +23,7 @@ from nccompile.passes.velocity.limits import limited, unfinished
 from nccompile.passes.velocity.settings import PlanSettings
 from nccompile.toolpath.columns import Floats, Kind, Toolpath
 
-__all__ = ["fastest"]
+__all__ = ["OptimalPlanner"]
 
 Flags = npt.NDArray[np.bool_]
 
@@ -32,14 +32,6 @@ _WORK = 12
 
 _SLACK = 1e-6
 """Relative room of the limits for rounding."""
-
-
-def fastest(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpath]:
-    """Planned chunks of the path."""
-    stage = _Stage(settings)
-    for chunk in chunks:
-        yield from stage.feed(chunk)
-    yield from stage.finish()
 
 
 @dataclass(frozen=True)
@@ -54,8 +46,8 @@ class _Bends:
 
 
 @dataclass
-class _Stage:
-    """The window: rows whose velocities may still change."""
+class OptimalPlanner:
+    """The window of the planner: rows whose velocities may still change."""
 
     settings: PlanSettings
     _held: Toolpath | None = field(default=None, init=False)

@@ -23,31 +23,31 @@ an infinite window and does not depend on the chunk size.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from nccompile.kernels import plan as kernels
 from nccompile.passes.velocity.cuts import cut_at_bends
-from nccompile.passes.velocity.jerk import smoothest
+from nccompile.passes.velocity.jerk import JerkPlanner
 from nccompile.passes.velocity.limits import limited, unfinished
-from nccompile.passes.velocity.optimal import fastest
+from nccompile.passes.velocity.optimal import OptimalPlanner
 from nccompile.passes.velocity.settings import JERK, TIME_OPTIMAL, PlanSettings
 from nccompile.toolpath.columns import EventKind, Floats, Kind, Toolpath
 
 __all__ = ["Planner", "plan", "row_times"]
 
+_PLANNERS: dict[str, Callable[[PlanSettings], JerkPlanner | OptimalPlanner | Planner]] = {
+    JERK: JerkPlanner,
+    TIME_OPTIMAL: OptimalPlanner,
+}
+"""Planners with a window of their own; the others are `Planner`."""
+
 
 def plan(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpath]:
     """Plans the velocities of a path; the chunks that come out are cut where rows settle."""
-    if settings.planner == TIME_OPTIMAL:
-        yield from fastest(chunks, settings)
-        return
-    if settings.planner == JERK:
-        yield from smoothest(chunks, settings)
-        return
-    planner = Planner(settings)
+    planner = _PLANNERS.get(settings.planner, Planner)(settings)
     for chunk in chunks:
         yield from planner.feed(chunk)
     yield from planner.finish()
@@ -55,7 +55,7 @@ def plan(chunks: Iterable[Toolpath], settings: PlanSettings) -> Iterator[Toolpat
 
 @dataclass
 class Planner:
-    """The window of `plan` for callers who push chunks themselves."""
+    """The window of the planners `softmotion` and `look-ahead`, for callers who push chunks themselves."""
 
     settings: PlanSettings
     _pending: Toolpath | None = field(default=None, init=False)
@@ -128,16 +128,8 @@ def row_times(chunk: Toolpath, v_before: float) -> Floats:
         kernels.third_order_durations(chunk.kind, chunk.length, chunk.v_end, chunk.a_end, v_before, out)
     else:
         kernels.durations(
-            chunk.kind,
-            chunk.length,
-            chunk.feed,
-            chunk.v_limit,
-            chunk.v_end,
-            chunk.accel,
-            chunk.decel,
-            v_before,
-            out,
-        )
+            chunk.kind, chunk.length, chunk.feed, chunk.v_limit, chunk.v_end, chunk.accel, chunk.decel, v_before, out
+        )  # fmt: skip
     e = chunk.events
     dwell = (e.kind == EventKind.DWELL) & (chunk.kind[e.segment] == Kind.DWELL)
     out[e.segment[dwell]] = e.k[dwell]
