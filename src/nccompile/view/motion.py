@@ -44,27 +44,26 @@ class Motion:
 
     def velocities(self) -> Floats:
         """Shape (m, k): difference quotient over the cycle before; NaN where the position jumped (G92)."""
-        v = np.zeros_like(self.position)
+        v = self._slopes(self.position)
         if len(self.t) > 1:
-            step = np.diff(self.position, axis=0)
-            v[1:] = step / np.diff(self.t)[:, None]
-            jumped = (self.v[1:] == 0.0) & (np.abs(step).max(axis=1) > 0.0)
+            jumped = (self.v[1:] == 0.0) & (np.abs(np.diff(self.position, axis=0)).max(axis=1) > 0.0)
             v[1:][jumped] = np.nan
         return v
 
     def accelerations(self) -> Floats:
         """Shape (m, k): difference quotient of the velocities; NaN next to a jump."""
-        a = np.zeros_like(self.position)
-        if len(self.t) > 1:
-            a[1:] = np.diff(self.velocities(), axis=0) / np.diff(self.t)[:, None]
-        return a
+        return self._slopes(self.velocities())
 
     def jerks(self) -> Floats:
         """Shape (m, k): difference quotient of the accelerations; NaN next to a jump."""
-        j = np.zeros_like(self.position)
+        return self._slopes(self.accelerations())
+
+    def _slopes(self, values: Floats) -> Floats:
+        """Shape (m, k): difference quotient over the cycle before, 0 in the first one."""
+        slopes = np.zeros_like(values)
         if len(self.t) > 1:
-            j[1:] = np.diff(self.accelerations(), axis=0) / np.diff(self.t)[:, None]
-        return j
+            slopes[1:] = np.diff(values, axis=0) / np.diff(self.t)[:, None]
+        return slopes
 
 
 @dataclass(frozen=True)

@@ -228,8 +228,9 @@ def _dynamics(
 ) -> None:  # fmt: skip
     """Four curves over time, above each other."""
     path, velocity, acceleration, jerk = figure.subplots(4, 1, sharex=True)
-    path.fill_between(*envelope(motion.t, motion.v, _BINS), color=_FEED, alpha=0.15, linewidth=0)
-    path.plot(*envelope(motion.t, motion.v, _BINS), color=_FEED, linewidth=1.0, label="velocity", zorder=3)
+    curve = envelope(motion.t, motion.v, _BINS)
+    path.fill_between(*curve, color=_FEED, alpha=0.15, linewidth=0)
+    path.plot(*curve, color=_FEED, linewidth=1.0, label="velocity", zorder=3)
     path.set(title="Path velocity", ylabel="v [mm/s]")
     top = 1.15 * float(motion.v.max(initial=1e-9))
     if caps is not None:
