@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from enum import IntEnum
 
@@ -17,10 +17,12 @@ import numpy as np
 from nccompile.kernels import interpolator as k
 from nccompile.kernels.stepper import Burst, Snapshot, Stepper
 from nccompile.kernels.timelaw import TRAPEZOID
-from nccompile.runtime.ring import Mark, RingBuffer
+from nccompile.runtime.ring import Event, Mark, RingBuffer
 from nccompile.toolpath.columns import EventKind, Floats
 
-__all__ = ["OVERRIDE_MAX", "OVERRIDE_MIN", "Inputs", "Interpolator", "Outputs", "Saved", "Status", "describe"]
+__all__ = [
+    "OVERRIDE_MAX", "OVERRIDE_MIN", "Inputs", "Interpolator", "Outputs", "Saved", "Status", "describe", "describe_m",
+]  # fmt: skip
 
 OVERRIDE_MIN = 0.01
 """Least override; lower values act as this one (SoftMotion §6.2.8)."""
@@ -149,6 +151,14 @@ def describe(
     out._place = stepper, rows, head
 
 
+def describe_m(out: Outputs, stepper: Stepper, events: Callable[[], Iterable[Event]]) -> None:
+    """Fills the outputs of the M function that waits, 0 if none does; events: those of the first row at hand."""
+    out.m, out.m_k, out.m_l, out.m_o = 0, 0.0, 0.0, ""
+    if stepper.i[k.M_ROW] >= 0:
+        event = next(e for e in events() if e.kind == EventKind.M_FUNCTION)
+        out.m, out.m_k, out.m_l, out.m_o = event.number, event.k, event.l, event.o
+
+
 @dataclass(frozen=True)
 class Saved:
     """A state of an `Interpolator` to come back to."""
@@ -197,16 +207,8 @@ class Interpolator:
             head >= view.tail or self._brakes_early(view.rows, head, view.tail)
         )
         self.ring.drop(burst.dropped)
-        self._read_m()
+        describe_m(out, self._stepper, lambda: self.ring.events(0))
         return burst
-
-    def _read_m(self) -> None:
-        """The M function that waits, with its words."""
-        out = self.outputs
-        out.m, out.m_k, out.m_l, out.m_o = 0, 0.0, 0.0, ""
-        if self._stepper.i[k.M_ROW] >= 0:
-            event = next(e for e in self.ring.events(0) if e.kind == EventKind.M_FUNCTION)
-            out.m, out.m_k, out.m_l, out.m_o = event.number, event.k, event.l, event.o
 
     def snapshot(self) -> Saved:
         """The state before a burst that may have to be taken back."""

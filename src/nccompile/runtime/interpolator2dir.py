@@ -23,9 +23,9 @@ from nccompile.backend.samples import rows_of
 from nccompile.kernels import interpolator as k
 from nccompile.kernels.stepper import Burst, Snapshot, Stepper
 from nccompile.runtime.backwards import backward
-from nccompile.runtime.interpolator import OVERRIDE_MIN, Inputs, Outputs, Status, describe
+from nccompile.runtime.interpolator import OVERRIDE_MIN, Inputs, Outputs, Status, describe, describe_m
 from nccompile.runtime.ring import Event
-from nccompile.toolpath.columns import EventKind, Floats, Toolpath
+from nccompile.toolpath.columns import Floats, Toolpath
 
 __all__ = ["Direction", "Interpolator2Dir", "Turn"]
 
@@ -144,24 +144,16 @@ class Interpolator2Dir:
         moved = len(burst) > 0 and burst.velocity[-1] > 0.0
         self.direction = Direction((1 - 2 * self._way) if moved else 0)
         out.done = out.done and self._way == 0
-        out.m, out.m_k, out.m_l, out.m_o = 0, 0.0, 0.0, ""
-        if self._stepper.i[k.M_ROW] >= 0:
-            event = next(e for e in self._events(self._head) if e.kind == EventKind.M_FUNCTION)
-            out.m, out.m_k, out.m_l, out.m_o = event.number, event.k, event.l, event.o
+        describe_m(out, self._stepper, self._events)
 
-    def _events(self, row: int) -> Iterable[Event]:
-        """The events of a row of the forward path."""
+    def _events(self) -> Iterable[Event]:
+        """The events of the first row of the forward path that is not done."""
         e = self.path.events
-        for at in np.flatnonzero(e.segment == row).tolist():
+        for at in np.flatnonzero(e.segment == self._head).tolist():
             name = self.path.names[e.o[at]] if e.o[at] >= 0 else ""
             yield Event(
-                int(e.kind[at]),
-                int(e.number[at]),
-                float(e.position[at]),
-                float(e.k[at]),
-                float(e.l[at]),
-                name,
-            )
+                int(e.kind[at]), int(e.number[at]), float(e.position[at]), float(e.k[at]), float(e.l[at]), name
+            )  # fmt: skip
 
     def snapshot(self) -> Turn:
         """The state before a burst that may have to be taken back."""

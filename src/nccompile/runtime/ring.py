@@ -87,6 +87,7 @@ class _Bank:
 
     @classmethod
     def allocate(cls, axes: int, room: int, event_room: int) -> _Bank:
+        """Arrays for `room` rows of so many axes with `event_room` events, all zero, rows straight."""
         ints, floats = np.int32, np.float64
         rows = Rows(
             kind=np.zeros(room, np.uint8),
