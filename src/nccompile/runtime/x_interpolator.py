@@ -55,8 +55,9 @@ class XInterpolator:
             raise UsageError("a path that follows X cannot wait or jump on its way")
         self._rows = rows_of(self.path)
         self._moving = moving
+        self._behind = np.append(0.0, np.cumsum(self.path.length[moving]))  # path length before each of them
         self._row = 0
-        self._nodes = np.zeros(NODES), np.zeros(NODES)
+        self._nodes, self._tabulated, self._count = (np.zeros(NODES), np.zeros(NODES)), -1, 0
         self._event = 0
         self._point = np.array(self.path.start, np.float64)
         self.set_position = self._point.copy()
@@ -73,46 +74,44 @@ class XInterpolator:
                 return self.set_position
             self._fire(row, 1.0)
             self.set_position = self.path.target[row].copy()
-            self.way_pos = float(self.path.length[self._moving[: self._row + 1]].sum())
             self._row += 1
+            self.way_pos = float(self._behind[self._row])
         self.done, self.source_line = True, -1
         return self.set_position
 
     def _inside(self, row: int, wanted: float) -> None:
         """The point of a row at an X, by halving: X goes on along it."""
         length = float(self.path.length[row])
-        count = self._tabulate(row)
-        low = max(0.0, self.way_pos - float(self.path.length[self._moving[: self._row]].sum()))
-        if wanted < self.direction * self._x_at(row, low, count):
+        behind = float(self._behind[self._row])
+        low = max(0.0, self.way_pos - behind)
+        if wanted < self.direction * self._x_at(row, low):
             return  # not there yet, or the workpiece goes back
         high = length
         for _ in range(_STEPS):
             mid = 0.5 * (low + high)
-            if self.direction * self._x_at(row, mid, count) <= wanted:
+            if self.direction * self._x_at(row, mid) <= wanted:
                 low = mid
             else:
                 high = mid
-        self._x_at(row, low, count)
+        self._x_at(row, low)
         self.set_position = self._point.copy()
-        self.way_pos = float(self.path.length[self._moving[: self._row]].sum()) + low
+        self.way_pos = behind + low
         self.source_line = int(self.path.line[row])
         self._fire(row, low / length)
 
-    def _tabulate(self, row: int) -> int:
-        curve = int(self.path.curve[row])
-        if curve < 0 or self.path.kind[row] == Kind.ARC:
-            return 0
-        return int(tabulate(int(self.path.kind[row]), self.path.curves.parameters[curve], *self._nodes))
-
-    def _x_at(self, row: int, s: float, count: int) -> float:
-        k.locate(self._rows, row, s, *self._nodes, count, self._point)
+    def _x_at(self, row: int, s: float) -> float:
+        """X at path length s of a row, whose point is left in `_point`."""
+        curve, kind = int(self.path.curve[row]), int(self.path.kind[row])
+        if row != self._tabulated and curve >= 0 and kind != Kind.ARC:
+            self._count = int(tabulate(kind, self.path.curves.parameters[curve], *self._nodes))
+            self._tabulated = row
+        k.locate(self._rows, row, s, *self._nodes, self._count, self._point)
         return float(self._point[0])
 
     def _check(self, row: int) -> None:
         """Raises UsageError if X does not go on along a row."""
-        count = self._tabulate(row)
         length = float(self.path.length[row])
-        x = np.array([self._x_at(row, length * i / (_PLACES - 1), count) for i in range(_PLACES)])
+        x = np.array([self._x_at(row, length * i / (_PLACES - 1)) for i in range(_PLACES)])
         if (self.direction * np.diff(x) <= 0.0).any():
             raise UsageError(
                 f"source line {self.path.line[row]}: X does not go on in the direction of the workpiece"
