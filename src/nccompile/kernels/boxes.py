@@ -14,7 +14,7 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, point
 
-__all__ = ["Rows", "box_tree", "leaves", "segment_box"]
+__all__ = ["Rows", "box_tree", "leaves", "next_leaf", "segment_box"]
 
 Kinds = npt.NDArray[np.uint8]
 Rows = npt.NDArray[np.int64]
@@ -96,3 +96,32 @@ def box_tree(kinds: Kinds, curve: Rows, table: Floats, ends: Floats, tree: Float
             tree[k, c] = min(float(tree[2 * k, c]), float(tree[2 * k + 1, c]))
             tree[k, 2 + c] = max(float(tree[2 * k, 2 + c]), float(tree[2 * k + 1, 2 + c]))
     return m
+
+
+@kernel
+def next_leaf(tree: Floats, box: Floats, stack: Rows, top: int, low: int, high: int) -> tuple[int, int]:
+    """The next of the segments low..high - 1 whose box meets `box`, and the new `top`; -1 if no more does.
+
+    stack: Shape (128,), nodes still to be looked at, `top` of them: node 1 alone when the search begins.
+    """
+    m = len(tree) // 2
+    while top > 0:
+        top -= 1
+        node = int(stack[top])
+        if (
+            tree[node, 0] > box[2] or tree[node, 2] < box[0] or tree[node, 1] > box[3] or tree[node, 3] < box[1]
+        ):  # fmt: skip
+            continue
+        first = node
+        span = 1
+        while first < m:
+            first *= 2
+            span *= 2
+        if first - m + span <= low or first - m >= high:
+            continue
+        if node >= m:
+            return node - m, top
+        stack[top] = 2 * node
+        stack[top + 1] = 2 * node + 1
+        top += 2
+    return -1, 0

@@ -15,7 +15,7 @@ from math import atan2, sqrt
 import numpy as np
 
 from nccompile.kernels import kernel
-from nccompile.kernels.boxes import Kinds, Rows
+from nccompile.kernels.boxes import Kinds, Rows, next_leaf
 from nccompile.kernels.curve_parts import way_share
 from nccompile.kernels.curve_points import ARC, ELLIPSE, POLYNOMIAL, Floats, derivative, second, tangent
 from nccompile.kernels.intersect import COMMON, intersections, own_crossing, place
@@ -228,29 +228,14 @@ def _first_crossing(
             found = i
             out[0] = us[0]
             out[1] = us[1]
+    last = min(i + most + 1, n)
     stack[0] = 1
     top = 1
-    low = tree[m + i]
-    while top > 0:
-        top -= 1
-        node = int(stack[top])
-        if (
-            tree[node, 0] > low[2] or tree[node, 2] < low[0] or tree[node, 1] > low[3] or tree[node, 3] < low[1]
-        ):  # fmt: skip
-            continue
-        if node < m:
-            span = 1
-            first = node
-            while first < m:
-                first *= 2
-                span *= 2
-            if first - m + span - 1 > i and first - m <= i + most:
-                stack[top] = 2 * node
-                stack[top + 1] = 2 * node + 1
-                top += 2
-            continue
-        j = node - m
-        if j <= i or j >= n or j > i + most or run[j] != run[i]:
+    while True:
+        j, top = next_leaf(tree, tree[m + i], stack, top, i + 1, last)
+        if j < 0:
+            break
+        if run[j] != run[i]:
             continue
         count = intersections(
             int(kinds[i]), row, ends[i], int(kinds[j]), table[max(int(curve[j]), 0)], ends[j], us, vs
@@ -337,24 +322,14 @@ def intervals(
     count = 0
     for i in range(n):
         row = table[max(int(curve[i]), 0)]
-        low = tree[m + i]
         stack[0] = 1
         top = 1
         cut = 0
-        while top > 0:
-            top -= 1
-            node = int(stack[top])
-            if (
-                tree[node, 0] > low[2] or tree[node, 2] < low[0] or tree[node, 1] > low[3] or tree[node, 3] < low[1]
-            ):  # fmt: skip
-                continue
-            if node < m:
-                stack[top] = 2 * node
-                stack[top + 1] = 2 * node + 1
-                top += 2
-                continue
-            j = node - m
-            if j >= n or j == i:
+        while True:
+            j, top = next_leaf(tree, tree[m + i], stack, top, 0, n)
+            if j < 0:
+                break
+            if j == i:
                 continue
             found = intersections(
                 int(kinds[i]), row, ends[i], int(kinds[j]), table[max(int(curve[j]), 0)], ends[j], us, vs
