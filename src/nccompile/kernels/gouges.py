@@ -15,7 +15,7 @@ import numpy as np
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows, segment_box
 from nccompile.kernels.curve_points import ARC, ELLIPSE, POLYNOMIAL, Floats, point, second
-from nccompile.kernels.intersect import COMMON, place, plain_intersections, share_of
+from nccompile.kernels.intersect import COMMON, place, plain_intersections, plain_length, share_of
 
 __all__ = ["chord_count", "chords", "deepest", "foot"]
 
@@ -56,16 +56,6 @@ def _gap(x: float, y: float, kind: int, p: Floats, e: Floats) -> float:
 
 
 @kernel
-def _size(kind: int, p: Floats, e: Floats) -> float:
-    """Length [mm] of a line or arc."""
-    if kind == ARC:
-        return float(p[2]) * abs(float(p[4]))
-    dx = float(e[2]) - float(e[0])
-    dy = float(e[3]) - float(e[1])
-    return sqrt(dx * dx + dy * dy)
-
-
-@kernel
 def _nearest(
     kind: int, p: Floats, e: Floats, other: int, q: Floats, f: Floats, us: Floats, vs: Floats, out: Floats
 ) -> float:  # fmt: skip
@@ -99,7 +89,7 @@ def _nearest(
             out[0] = x
             out[1] = y
     # Where they cross, an end of the shorter one is within half of its length.
-    is_near = best > 0.0 and 2.0 * best <= min(_size(kind, p, e), _size(other, q, f))
+    is_near = best > 0.0 and 2.0 * best <= min(plain_length(kind, p, e), plain_length(other, q, f))
     if is_near and plain_intersections(kind, p, e, other, q, f, us, vs) > 0:
         x, y = place(kind, p, e, float(us[0]))
         out[0] = x

@@ -14,15 +14,17 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
-from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, derivative, point
+from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, derivative, point, tangent
 
 __all__ = [
     "COMMON",
     "Kinds",
+    "heading",
     "intersections",
     "own_crossing",
     "place",
     "plain_intersections",
+    "plain_length",
     "share_of",
     "slope",
 ]
@@ -51,6 +53,31 @@ def slope(kind: int, p: Floats, e: Floats, u: float) -> tuple[float, float]:
     if ARC <= kind <= POLYNOMIAL:
         return derivative(kind, p, u)
     return float(e[2]) - float(e[0]), float(e[3]) - float(e[1])
+
+
+@kernel
+def heading(kind: int, p: Floats, e: Floats, u: float) -> tuple[float, float]:
+    """Unit tangent at u; (0, 0) if the segment is a point."""
+    if ARC <= kind <= POLYNOMIAL:
+        return tangent(kind, p, u)
+    dx = float(e[2]) - float(e[0])
+    dy = float(e[3]) - float(e[1])
+    size = sqrt(dx * dx + dy * dy)
+    if size == 0.0:
+        return 0.0, 0.0
+    return dx / size, dy / size
+
+
+@kernel
+def plain_length(kind: int, p: Floats, e: Floats) -> float:
+    """Length [mm] of a line or arc; 0 of others."""
+    if kind == ARC:
+        return float(p[2]) * abs(float(p[4]))
+    if ARC < kind <= POLYNOMIAL:
+        return 0.0
+    dx = float(e[2]) - float(e[0])
+    dy = float(e[3]) - float(e[1])
+    return sqrt(dx * dx + dy * dy)
 
 
 @kernel

@@ -17,8 +17,8 @@ import numpy as np
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows, next_leaf
 from nccompile.kernels.curve_parts import way_share
-from nccompile.kernels.curve_points import ARC, ELLIPSE, POLYNOMIAL, Floats, derivative, second, tangent
-from nccompile.kernels.intersect import COMMON, intersections, own_crossing, place
+from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, derivative, second, tangent
+from nccompile.kernels.intersect import COMMON, intersections, own_crossing, place, plain_length
 
 __all__ = ["intervals", "without_loops"]
 
@@ -117,18 +117,6 @@ def _near(ax: float, ay: float, x: float, y: float) -> bool:
 
 
 @kernel
-def _length(kind: int, p: Floats, e: Floats) -> float:
-    """Length [mm] of a line or arc; 0 of others, which are not followed."""
-    if kind == ARC:
-        return float(p[2]) * abs(float(p[4]))
-    if kind == ELLIPSE or kind == POLYNOMIAL:
-        return 0.0
-    dx = float(e[2]) - float(e[0])
-    dy = float(e[3]) - float(e[1])
-    return sqrt(dx * dx + dy * dy)
-
-
-@kernel
 def _parting(
     kinds: Kinds, curve: Rows, table: Floats, ends: Floats, run: Rows, i: int, u: float, j: int, v: float, on: bool,
     rays: Floats, other: Floats,
@@ -141,10 +129,10 @@ def _parting(
     for _ in range(2 * n):
         if not 0 <= i < n or not 0 <= j < n or run[i] != run[j] or (i >= j and not on):
             return 0
-        one = _length(int(kinds[i]), table[max(int(curve[i]), 0)], ends[i])
-        two = _length(int(kinds[j]), table[max(int(curve[j]), 0)], ends[j])
+        one = plain_length(int(kinds[i]), table[max(int(curve[i]), 0)], ends[i])
+        two = plain_length(int(kinds[j]), table[max(int(curve[j]), 0)], ends[j])
         if one == 0.0 or two == 0.0:
-            return 0
+            return 0  # ellipses and cubics are not followed
         step = min(one * (1.0 - u), two * (1.0 - v if on else v))
         u += step / one
         v += step / two if on else -step / two

@@ -7,14 +7,15 @@
 A new row takes its columns from the source row `origin`, and the axes beside X and Y at the part `part` of it.
 """
 
-from math import atan2, pi, sqrt
+from math import atan2, pi
 
 import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows
-from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, tangent
+from nccompile.kernels.curve_points import ARC, Floats
+from nccompile.kernels.intersect import heading
 
 __all__ = ["CHECKED", "LINKED", "MOVED", "emit_rows"]
 
@@ -34,25 +35,12 @@ _COINCIDENT = 1e-9  # [mm], as geometry.tolerance.COINCIDENT
 
 
 @kernel
-def _heading(at: int, u: float, kind: Kinds, curve: Rows, table: Floats, ends: Floats) -> tuple[float, float]:
-    """Unit tangent of a piece; (0, 0) if it is a point."""
-    if ARC <= kind[at] <= POLYNOMIAL:
-        return tangent(int(kind[at]), table[int(curve[at])], u)
-    dx = float(ends[at, 2]) - float(ends[at, 0])
-    dy = float(ends[at, 3]) - float(ends[at, 1])
-    size = sqrt(dx * dx + dy * dy)
-    if size == 0.0:
-        return 0.0, 0.0
-    return dx / size, dy / size
-
-
-@kernel
 def _lead(
     at: int, piece: int, is_in: bool, style: int, length: float, side: float,
     kind: Kinds, curve: Rows, table: Floats, ends: Floats,
 ) -> None:  # fmt: skip
     """Row `at` of the table becomes the lead into the start, or out of the end, of a piece: line (1), arc (2)."""
-    tx, ty = _heading(piece, 0.0 if is_in else 1.0, kind, curve, table, ends)
+    tx, ty = heading(int(kind[piece]), table[max(int(curve[piece]), 0)], ends[piece], 0.0 if is_in else 1.0)
     x = float(ends[piece, 0] if is_in else ends[piece, 2])
     y = float(ends[piece, 1] if is_in else ends[piece, 3])
     way = -length if is_in else length

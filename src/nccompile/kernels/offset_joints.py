@@ -19,8 +19,8 @@ import numpy as np
 from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows
 from nccompile.kernels.curve_parts import curve_piece
-from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, tangent
-from nccompile.kernels.intersect import COMMON, intersections, place, slope
+from nccompile.kernels.curve_points import ARC, Floats
+from nccompile.kernels.intersect import COMMON, heading, intersections, place, slope
 
 __all__ = ["cut_piece", "join_offsets"]
 
@@ -31,17 +31,6 @@ _BACK = 1e-9  # [rad] a contour that bends by this less than pi turns back on it
 _RETRACED = 1e-3  # [rad] the same where a contour closes: it is led in and out on one line
 _TRIED = 6  # pieces at both sides of a concave corner that are tried for a common point
 _ROOM = 3.0  # a piece is at least this many times as long as what is cut off it for a chamfer
-
-
-@kernel
-def _direction(kind: int, p: Floats, e: Floats, u: float) -> tuple[float, float]:
-    """Unit tangent at u."""
-    if ARC <= kind <= POLYNOMIAL:
-        return tangent(kind, p, u)
-    dx = float(e[2]) - float(e[0])
-    dy = float(e[3]) - float(e[1])
-    size = sqrt(dx * dx + dy * dy)
-    return dx / size, dy / size
 
 
 @kernel
@@ -256,8 +245,8 @@ def join_offsets(
             connectors[last] = -1
             count += 1
             continue
-        ax, ay = _direction(int(kinds[last]), table[max(int(curve[last]), 0)], ends[last], 1.0)
-        bx, by = _direction(int(kinds[two]), table[max(int(curve[two]), 0)], ends[two], 0.0)
+        ax, ay = heading(int(kinds[last]), table[max(int(curve[last]), 0)], ends[last], 1.0)
+        bx, by = heading(int(kinds[two]), table[max(int(curve[two]), 0)], ends[two], 0.0)
         turn = atan2(ax * by - ay * bx, ax * bx + ay * by)
         is_next = is_closing or last + 1 == two
         if is_next and (turn * d[last] < 0.0 or abs(turn) > pi - _BACK):
