@@ -28,7 +28,7 @@ from nccompile.kernels.curve_points import (
     tangent,
 )
 
-__all__ = ["cut_curves", "offset_rows", "shares_along"]
+__all__ = ["cut_curves", "offset_rows", "put_arc", "put_line", "shares_along"]
 
 _NO_RADIUS = 1e-9  # [mm] an offset arc of less is a point, its centre: a line without length
 _FINEST = 1.0 / 16777216  # of a curve: less of it that turns is a cusp
@@ -100,40 +100,117 @@ def _miss(kind: int, p: Floats, d: float, u0: float, u1: float, row: Floats, q: 
 
 
 @kernel
-def _cusp(kind: int, p: Floats, d: float, u0: float, u1: float, q0: Floats, row: Floats) -> bool:
-    """The arc about a place where a curve turns back, into row; False if it hardly turns there."""
+def put_line(
+    at: int, x0: float, y0: float, x1: float, y1: float, kind: Kinds, curve: Rows, ends: Floats
+) -> None:
+    """Piece `at` becomes a line."""
+    kind[at] = 1
+    curve[at] = -1
+    ends[at, 0] = x0
+    ends[at, 1] = y0
+    ends[at, 2] = x1
+    ends[at, 3] = y1
+
+
+@kernel
+def put_arc(
+    at: int, cx: float, cy: float, x0: float, y0: float, x1: float, y1: float, sweep: float,
+    kind: Kinds, curve: Rows, table: Floats, ends: Floats,
+) -> None:  # fmt: skip
+    """Piece `at` becomes an arc about (cx, cy)."""
+    put_line(at, x0, y0, x1, y1, kind, curve, ends)
+    kind[at] = ARC
+    curve[at] = at
+    for c in range(12):
+        table[at, c] = 0.0
+    dx = x0 - cx
+    dy = y0 - cy
+    table[at, 0] = cx
+    table[at, 1] = cy
+    table[at, 2] = sqrt(dx * dx + dy * dy)
+    table[at, 3] = atan2(dy, dx)
+    table[at, 4] = sweep
+
+
+@kernel
+def _cusp(kind: int, p: Floats, d: float, u0: float, u1: float) -> float:
+    """The angle [rad] by which the offset runs about a place u0..u1 where a curve turns back; 0 if it hardly does."""
     ax, ay = tangent(kind, p, u0)
     bx, by = tangent(kind, p, u1)
     turn = atan2(ax * by - ay * bx, ax * bx + ay * by)
     if abs(turn) < 1e-6:
-        return False
+        return 0.0
     if abs(turn) > _TURNED:
-        turn = -abs(turn) if d > 0.0 else abs(turn)
-    x, y = point(kind, p, 0.5 * (u0 + u1))
-    dx = float(q0[0]) - x
-    dy = float(q0[1]) - y
-    for c in range(12):
-        row[c] = 0.0
-    row[0] = x
-    row[1] = y
-    row[2] = sqrt(dx * dx + dy * dy)
-    row[3] = atan2(dy, dx)
-    row[4] = turn
-    return True
+        return -abs(turn) if d > 0.0 else abs(turn)
+    return turn
 
 
 @kernel
-def _offset_arc(p: Floats, d: float, row: Floats) -> bool:
-    """The offset of an arc into row; False if it is a point."""
+def _put_offset_arc(
+    at: int, p: Floats, d: float, kind: Kinds, curve: Rows, table: Floats, ends: Floats
+) -> None:
+    """Piece `at` becomes the offset of an arc; a line without length if that is a point."""
     radius = float(p[2]) - (d if p[4] > 0.0 else -d)
     if abs(radius) <= _NO_RADIUS:
-        return False
+        put_line(at, float(p[0]), float(p[1]), float(p[0]), float(p[1]), kind, curve, ends)
+        return
+    kind[at] = ARC
+    curve[at] = at
+    row = table[at]
     for c in range(12):
         row[c] = p[c]
     row[2] = abs(radius)
     if radius < 0.0:
         row[3] = float(p[3]) + pi
-    return True
+    ends[at, 0] = row[0] + row[2] * cos(row[3])
+    ends[at, 1] = row[1] + row[2] * sin(row[3])
+    ends[at, 2] = row[0] + row[2] * cos(row[3] + row[4])
+    ends[at, 3] = row[1] + row[2] * sin(row[3] + row[4])
+
+
+@kernel
+def _put_offset_curve(
+    at: int, most: int, source: int, p: Floats, d: float, tolerance: float,
+    kind: Kinds, curve: Rows, table: Floats, ends: Floats, part: Floats,
+) -> int:  # fmt: skip
+    """Pieces `at` and following become the offset of an ellipse or cubic; returns the next one, -1 beyond `most`."""
+    q0 = np.zeros(4)
+    q1 = np.zeros(4)
+    q = np.zeros(4)
+    todo = np.zeros(64)
+    low = 0.0
+    todo[0] = 1.0
+    top = 1
+    _beside(source, p, d, 0.0, q0)
+    while top > 0:
+        if at >= most:
+            return -1
+        high = float(todo[top - 1])
+        _beside(source, p, d, high, q1)
+        _hermite(q0, q1, high - low, table[at])
+        is_fine = high - low <= _FINEST
+        if not is_fine and _miss(source, p, d, low, high, table[at], q) > _MARGIN * tolerance:
+            todo[top] = 0.5 * (low + high)
+            top += 1
+            continue
+        turn = _cusp(source, p, d, low, high) if is_fine else 0.0
+        if turn != 0.0:
+            cx, cy = point(source, p, 0.5 * (low + high))
+            put_arc(
+                at, cx, cy, float(q0[0]), float(q0[1]), float(q1[0]), float(q1[1]), turn, kind, curve, table, ends
+            )  # fmt: skip
+        else:
+            put_line(at, float(q0[0]), float(q0[1]), float(q1[0]), float(q1[1]), kind, curve, ends)
+            kind[at] = POLYNOMIAL
+            curve[at] = at
+        part[at, 0] = low
+        part[at, 1] = high
+        at += 1
+        top -= 1
+        low = high
+        for c in range(4):
+            q0[c] = q1[c]
+    return at
 
 
 @kernel
@@ -151,10 +228,6 @@ def offset_rows(
     """
     room = len(piece_kind) - 2 * len(kinds)
     count = 0
-    q0 = np.zeros(4)
-    q1 = np.zeros(4)
-    q = np.zeros(4)
-    todo = np.zeros(64)
     for i in range(len(kinds)):
         first[i] = count
         kind = int(kinds[i])
@@ -163,66 +236,26 @@ def offset_rows(
             return -1
         piece_part[count, 0] = 0.0
         piece_part[count, 1] = 1.0
-        if kind < ARC or kind > POLYNOMIAL:
-            dx = float(ends[i, 2]) - float(ends[i, 0])
-            dy = float(ends[i, 3]) - float(ends[i, 1])
+        if ARC < kind <= POLYNOMIAL:
+            count = _put_offset_curve(
+                count, room, kind, table[int(curve[i])], side, tolerance, piece_kind, piece_curve, piece_table,
+                piece_ends, piece_part,
+            )  # fmt: skip
+            if count < 0:
+                return -1
+            continue
+        if kind == ARC:
+            _put_offset_arc(
+                count, table[int(curve[i])], side, piece_kind, piece_curve, piece_table, piece_ends
+            )
+        else:
+            x0, y0, x1, y1 = float(ends[i, 0]), float(ends[i, 1]), float(ends[i, 2]), float(ends[i, 3])
+            dx = x1 - x0
+            dy = y1 - y0
             size = sqrt(dx * dx + dy * dy)
             nx = -dy / size * side
             ny = dx / size * side
-            piece_kind[count] = 1
-            piece_curve[count] = -1
-            piece_ends[count, 0] = ends[i, 0] + nx
-            piece_ends[count, 1] = ends[i, 1] + ny
-            piece_ends[count, 2] = ends[i, 2] + nx
-            piece_ends[count, 3] = ends[i, 3] + ny
-            count += 1
-            continue
-        p = table[int(curve[i])]
-        row = piece_table[count]
-        if kind == ARC:
-            if _offset_arc(p, side, row):
-                piece_kind[count] = ARC
-                piece_curve[count] = count
-                piece_ends[count, 0] = row[0] + row[2] * cos(row[3])
-                piece_ends[count, 1] = row[1] + row[2] * sin(row[3])
-                piece_ends[count, 2] = row[0] + row[2] * cos(row[3] + row[4])
-                piece_ends[count, 3] = row[1] + row[2] * sin(row[3] + row[4])
-            else:
-                piece_kind[count] = 1
-                piece_curve[count] = -1
-                for c in range(4):
-                    piece_ends[count, c] = p[c % 2]
-            count += 1
-            continue
-        low = 0.0
-        todo[0] = 1.0
-        top = 1
-        _beside(kind, p, side, 0.0, q0)
-        while top > 0:
-            if count >= room:
-                return -1
-            high = float(todo[top - 1])
-            row = piece_table[count]
-            _beside(kind, p, side, high, q1)
-            _hermite(q0, q1, high - low, row)
-            is_fine = high - low <= _FINEST
-            if not is_fine and _miss(kind, p, side, low, high, row, q) > _MARGIN * tolerance:
-                todo[top] = 0.5 * (low + high)
-                top += 1
-                continue
-            is_arc = is_fine and _cusp(kind, p, side, low, high, q0, row)
-            piece_kind[count] = ARC if is_arc else POLYNOMIAL
-            piece_curve[count] = count
-            piece_ends[count, 0] = q0[0]
-            piece_ends[count, 1] = q0[1]
-            piece_ends[count, 2] = q1[0]
-            piece_ends[count, 3] = q1[1]
-            piece_part[count, 0] = low
-            piece_part[count, 1] = high
-            count += 1
-            top -= 1
-            low = high
-            for c in range(4):
-                q0[c] = q1[c]
+            put_line(count, x0 + nx, y0 + ny, x1 + nx, y1 + ny, piece_kind, piece_curve, piece_ends)
+        count += 1
     first[len(kinds)] = count
     return count

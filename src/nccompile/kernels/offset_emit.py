@@ -7,7 +7,7 @@
 A new row takes its columns from the source row `origin`, and the axes beside X and Y at the part `part` of it.
 """
 
-from math import atan2, pi
+from math import pi
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ from nccompile.kernels import kernel
 from nccompile.kernels.boxes import Kinds, Rows
 from nccompile.kernels.curve_points import ARC, Floats
 from nccompile.kernels.intersect import heading
+from nccompile.kernels.offset import put_arc, put_line
 
 __all__ = ["CHECKED", "LINKED", "MOVED", "emit_rows"]
 
@@ -44,28 +45,16 @@ def _lead(
     x = float(ends[piece, 0] if is_in else ends[piece, 2])
     y = float(ends[piece, 1] if is_in else ends[piece, 3])
     way = -length if is_in else length
-    kind[at] = 1
-    curve[at] = -1
-    ax = x + way * tx
-    ay = y + way * ty
-    if style == 2 and (tx != 0.0 or ty != 0.0):
-        cx = x - side * length * ty
-        cy = y + side * length * tx
-        ax = cx + way * tx
-        ay = cy + way * ty
-        kind[at] = ARC
-        curve[at] = at
-        for c in range(12):
-            table[at, c] = 0.0
-        table[at, 0] = cx
-        table[at, 1] = cy
+    is_arc = style == 2 and (tx != 0.0 or ty != 0.0)
+    cx = x - side * length * ty
+    cy = y + side * length * tx
+    ax = (cx if is_arc else x) + way * tx
+    ay = (cy if is_arc else y) + way * ty
+    x0, y0, x1, y1 = (ax, ay, x, y) if is_in else (x, y, ax, ay)
+    put_line(at, x0, y0, x1, y1, kind, curve, ends)
+    if is_arc:
+        put_arc(at, cx, cy, x0, y0, x1, y1, side * 0.5 * pi, kind, curve, table, ends)
         table[at, 2] = length
-        table[at, 3] = atan2(ay - cy, ax - cx) if is_in else atan2(y - cy, x - cx)
-        table[at, 4] = side * 0.5 * pi
-    ends[at, 0] = ax if is_in else x
-    ends[at, 1] = ay if is_in else y
-    ends[at, 2] = x if is_in else ax
-    ends[at, 3] = y if is_in else ay
 
 
 @kernel

@@ -21,6 +21,7 @@ from nccompile.kernels.boxes import Kinds, Rows
 from nccompile.kernels.curve_parts import curve_piece
 from nccompile.kernels.curve_points import ARC, Floats
 from nccompile.kernels.intersect import COMMON, heading, intersections, place, slope
+from nccompile.kernels.offset import put_arc, put_line
 
 __all__ = ["cut_piece", "join_offsets"]
 
@@ -53,39 +54,6 @@ def cut_piece(
         ends[at, 2] = x1
         ends[at, 3] = y1
         part[at, 1] = p0 + u1 * (p1 - p0)
-
-
-@kernel
-def _line(
-    at: int, x0: float, y0: float, x1: float, y1: float, kind: Kinds, curve: Rows, ends: Floats
-) -> None:
-    """Piece `at` becomes a line."""
-    kind[at] = 1
-    curve[at] = -1
-    ends[at, 0] = x0
-    ends[at, 1] = y0
-    ends[at, 2] = x1
-    ends[at, 3] = y1
-
-
-@kernel
-def _arc(
-    at: int, cx: float, cy: float, x0: float, y0: float, x1: float, y1: float, sweep: float,
-    kind: Kinds, curve: Rows, table: Floats, ends: Floats,
-) -> None:  # fmt: skip
-    """Piece `at` becomes an arc about (cx, cy)."""
-    _line(at, x0, y0, x1, y1, kind, curve, ends)
-    kind[at] = ARC
-    curve[at] = at
-    for c in range(12):
-        table[at, c] = 0.0
-    dx = x0 - cx
-    dy = y0 - cy
-    table[at, 0] = cx
-    table[at, 1] = cy
-    table[at, 2] = sqrt(dx * dx + dy * dy)
-    table[at, 3] = atan2(dy, dx)
-    table[at, 4] = sweep
 
 
 @kernel
@@ -153,12 +121,12 @@ def _convex(
     sweep = -abs(turn) if d > 0.0 else abs(turn)
     if d != after:
         if abs(turn * d) <= _COINCIDENT:
-            _line(at, ex, ey, sx, sy, kind, curve, ends)
+            put_line(at, ex, ey, sx, sy, kind, curve, ends)
             return 1
         mx = cx + (sx - cx) * (d / after)
         my = cy + (sy - cy) * (d / after)
-        _arc(at, cx, cy, ex, ey, mx, my, sweep, kind, curve, table, ends)
-        _line(at + 1, mx, my, sx, sy, kind, curve, ends)
+        put_arc(at, cx, cy, ex, ey, mx, my, sweep, kind, curve, table, ends)
+        put_line(at + 1, mx, my, sx, sy, kind, curve, ends)
         return 2
     reach = 1.0 / max(cos(0.5 * turn), 1e-9)
     tx = cx + ((ex - cx) + (sx - cx)) / (1.0 + cos(turn)) if reach < 1e6 else cx
@@ -179,10 +147,10 @@ def _convex(
             ends[j, 1] = ey
             return 0
     if line and reach <= limit:
-        _line(at, ex, ey, tx, ty, kind, curve, ends)
-        _line(at + 1, tx, ty, sx, sy, kind, curve, ends)
+        put_line(at, ex, ey, tx, ty, kind, curve, ends)
+        put_line(at + 1, tx, ty, sx, sy, kind, curve, ends)
         return 2
-    _arc(at, cx, cy, ex, ey, sx, sy, sweep, kind, curve, table, ends)
+    put_arc(at, cx, cy, ex, ey, sx, sy, sweep, kind, curve, table, ends)
     return 1
 
 
@@ -241,7 +209,7 @@ def join_offsets(
             continue
         connector[last] = count
         if d[last] * d[two] < 0.0:
-            _line(count, ex, ey, sx, sy, piece_kind, piece_curve, piece_ends)
+            put_line(count, ex, ey, sx, sy, piece_kind, piece_curve, piece_ends)
             connectors[last] = -1
             count += 1
             continue
@@ -272,7 +240,7 @@ def join_offsets(
         if is_small and _chamfer(i, j, gap, piece_kind, piece_curve, piece_table, piece_ends, piece_part):
             ex, ey = float(piece_ends[i, 2]), float(piece_ends[i, 3])
             sx, sy = float(piece_ends[j, 0]), float(piece_ends[j, 1])
-        _line(count, ex, ey, sx, sy, piece_kind, piece_curve, piece_ends)
+        put_line(count, ex, ey, sx, sy, piece_kind, piece_curve, piece_ends)
         connectors[last] = 1
         count += 1
     return count
