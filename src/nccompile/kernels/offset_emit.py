@@ -58,6 +58,53 @@ def _lead(
 
 
 @kernel
+def _put_row(
+    at: int, kind: int, origin: int, part: float, piece: int, x: float, y: float, flags: int, contour: int,
+    out_kind: Bytes, out_origin: Rows, out_part: Floats, out_piece: Rows, out_xy: Floats, out_flags: Bytes,
+    out_link: Floats, out_contour: Rows,
+) -> int:  # fmt: skip
+    """Writes row `at`, which stands for the whole of its origin if it is linked; returns the next one."""
+    out_kind[at] = kind
+    out_origin[at] = origin
+    out_part[at] = part
+    out_piece[at] = piece
+    out_xy[at, 0] = x
+    out_xy[at, 1] = y
+    out_flags[at] = flags
+    out_link[at, 0] = 0.0
+    out_link[at, 1] = 1.0
+    out_contour[at] = contour
+    return at + 1
+
+
+@kernel
+def _contour_ends(
+    k: int, end: int, moving: Rows, dropped: Bytes, begin: Rows, stop: Rows, connector: Rows, connectors: Rows
+) -> tuple[int, int, int, int, int]:
+    """The contour whose moving rows begin with k and lie before source row `end`.
+
+    Returns:  the moving row behind it;  its first piece, -1 if there is none, and the moving row that piece is of;
+              its last piece and the moving row that is of.
+    """
+    first_piece = -1
+    last_piece = -1
+    lead_at = -1
+    trail_at = -1
+    while k < len(moving) and moving[k] < end:
+        has_pieces = begin[k] < stop[k]
+        if dropped[k] == 0 and (has_pieces or connectors[k] != 0):
+            if first_piece < 0:
+                first_piece = int(begin[k] if has_pieces else connector[k])
+                lead_at = k
+            last_piece = int(stop[k]) - 1
+            trail_at = k
+            if connectors[k] != 0:
+                last_piece = int(connector[k]) + abs(int(connectors[k])) - 1
+        k += 1
+    return k, first_piece, lead_at, last_piece, trail_at
+
+
+@kernel
 def emit_rows(
     count: int, kind: Bytes, x: Floats, y: Floats, contour: Rows, moving: Rows, d: Floats, dropped: Bytes,
     begin: Rows, stop: Rows, connector: Rows, connectors: Rows, pieces: int, style: int, length: float,
@@ -83,35 +130,19 @@ def emit_rows(
         g = int(contour[i])
         end = i + 1
         last_k = k
-        first_piece = -1
-        last_piece = -1
-        lead_at = -1  # moving row in front of which the lead-in stands
-        trail_at = -1
+        first_piece = last_piece = lead_at = trail_at = -1
         if g >= 0:
             while end < count and contour[end] == g:
                 end += 1
-            while last_k < len(moving) and moving[last_k] < end:
-                has_pieces = begin[last_k] < stop[last_k]
-                if dropped[last_k] == 0 and (has_pieces or connectors[last_k] != 0):
-                    if first_piece < 0:
-                        first_piece = int(begin[last_k] if has_pieces else connector[last_k])
-                        lead_at = last_k
-                    last_piece = int(stop[last_k]) - 1
-                    trail_at = last_k
-                    if connectors[last_k] != 0:
-                        last_piece = int(connector[last_k]) + abs(int(connectors[last_k])) - 1
-                last_k += 1
+            last_k, first_piece, lead_at, last_piece, trail_at = _contour_ends(
+                k, end, moving, dropped, begin, stop, connector, connectors
+            )
         if first_piece < 0:
             for r in range(i, end):
-                out_kind[at] = kind[r]
-                out_origin[at] = r
-                out_part[at] = 1.0
-                out_piece[at] = -1
-                out_flags[at] = LINKED
-                out_link[at, 0] = 0.0
-                out_link[at, 1] = 1.0
-                out_contour[at] = -1
-                at += 1
+                at = _put_row(
+                    at, int(kind[r]), r, 1.0, -1, hx, hy, LINKED, -1, out_kind, out_origin, out_part, out_piece,
+                    out_xy, out_flags, out_link, out_contour,
+                )  # fmt: skip
             hx = float(x[end])
             hy = float(y[end])
             k = last_k
@@ -121,17 +152,8 @@ def emit_rows(
         tx, ty = float(piece_ends[first_piece, 0]), float(piece_ends[first_piece, 1])
         if style > 0:
             _lead(
-                pieces,
-                first_piece,
-                True,
-                style,
-                length,
-                side,
-                piece_kind,
-                piece_curve,
-                piece_table,
-                piece_ends,
-            )
+                pieces, first_piece, True, style, length, side, piece_kind, piece_curve, piece_table, piece_ends
+            )  # fmt: skip
             _lead(
                 pieces + 1, last_piece, False, style, length, side, piece_kind, piece_curve, piece_table, piece_ends
             )  # fmt: skip
@@ -141,98 +163,74 @@ def emit_rows(
             out_xy[at - 1, 1] = ty
             out_flags[at - 1] |= MOVED
         elif max(abs(hx - tx), abs(hy - ty)) > 0.0:
-            out_kind[at] = _POSITIONING
-            out_origin[at] = i
-            out_part[at] = 0.0
-            out_piece[at] = -1
-            out_xy[at, 0] = tx
-            out_xy[at, 1] = ty
-            out_flags[at] = MOVED
-            out_contour[at] = -1
-            at += 1
+            at = _put_row(
+                at, _POSITIONING, i, 0.0, -1, tx, ty, MOVED, -1, out_kind, out_origin, out_part, out_piece, out_xy,
+                out_flags, out_link, out_contour,
+            )  # fmt: skip
         hx = tx
         hy = ty
         for r in range(i, end):
-            if k < last_k and moving[k] == r:
-                for stage in range(4):  # lead-in, pieces, connectors, lead-out
-                    low = 0
-                    high = 0
-                    if dropped[k] == 1:
-                        break
-                    if stage == 0 and style > 0 and k == lead_at:
-                        low = pieces
-                        high = pieces + 1
-                    elif stage == 1:
-                        low = int(begin[k])
-                        high = int(stop[k])
-                    elif stage == 2 and connectors[k] != 0:
-                        low = int(connector[k])
-                        high = low + abs(int(connectors[k]))
-                    elif stage == 3 and style > 0 and k == trail_at:
-                        low = pieces + 1
-                        high = pieces + 2
-                    if stage == 1 and low >= high:
-                        out_kind[at] = _LINE
-                        out_origin[at] = r
-                        out_part[at] = 1.0
-                        out_piece[at] = -1
-                        out_xy[at, 0] = hx
-                        out_xy[at, 1] = hy
-                        out_flags[at] = MOVED | LINKED
-                        out_link[at, 0] = 0.0
-                        out_link[at, 1] = 1.0
-                        out_contour[at] = g
-                        at += 1
-                    for q in range(low, high):
-                        is_last = q == high - 1
-                        if (
-                            stage == 1 and not is_last and piece_kind[q] < ARC
-                            and max(abs(piece_ends[q, 2] - hx), abs(piece_ends[q, 3] - hy)) <= _COINCIDENT
-                        ):  # fmt: skip
-                            continue
-                        hx = float(piece_ends[q, 2])
-                        hy = float(piece_ends[q, 3])
-                        out_kind[at] = piece_kind[q]
-                        out_origin[at] = r
-                        out_piece[at] = q
-                        out_xy[at, 0] = hx
-                        out_xy[at, 1] = hy
-                        out_flags[at] = MOVED | CHECKED
-                        out_contour[at] = g
-                        out_part[at] = 0.0 if stage == 0 else 1.0
-                        if stage == 1:
-                            out_flags[at] |= LINKED
-                            out_part[at] = 1.0 if is_last else float(piece_part[q, 1])
-                            out_link[at, 0] = 0.0 if q == low else float(piece_part[q, 0])
-                            out_link[at, 1] = out_part[at]
-                        elif stage == 2 and connectors[k] < 0:
-                            out_flags[at] = MOVED
-                        at += 1
-                k += 1
-            else:
-                out_kind[at] = kind[r]
-                out_origin[at] = r
-                out_part[at] = 1.0
-                out_piece[at] = -1
-                out_xy[at, 0] = hx
-                out_xy[at, 1] = hy
-                out_flags[at] = MOVED | LINKED
-                out_link[at, 0] = 0.0
-                out_link[at, 1] = 1.0
-                out_contour[at] = g
-                at += 1
+            if k == last_k or moving[k] != r:
+                at = _put_row(
+                    at, int(kind[r]), r, 1.0, -1, hx, hy, MOVED | LINKED, g, out_kind, out_origin, out_part,
+                    out_piece, out_xy, out_flags, out_link, out_contour,
+                )  # fmt: skip
+                continue
+            for stage in range(4):  # lead-in, pieces, connectors, lead-out
+                low = 0
+                high = 0
+                if dropped[k] == 1:
+                    break
+                if stage == 0 and style > 0 and k == lead_at:
+                    low = pieces
+                    high = pieces + 1
+                elif stage == 1:
+                    low = int(begin[k])
+                    high = int(stop[k])
+                elif stage == 2 and connectors[k] != 0:
+                    low = int(connector[k])
+                    high = low + abs(int(connectors[k]))
+                elif stage == 3 and style > 0 and k == trail_at:
+                    low = pieces + 1
+                    high = pieces + 2
+                if stage == 1 and low >= high:
+                    at = _put_row(
+                        at, _LINE, r, 1.0, -1, hx, hy, MOVED | LINKED, g, out_kind, out_origin, out_part, out_piece,
+                        out_xy, out_flags, out_link, out_contour,
+                    )  # fmt: skip
+                for q in range(low, high):
+                    is_last = q == high - 1
+                    if (
+                        stage == 1 and not is_last and piece_kind[q] < ARC
+                        and max(abs(piece_ends[q, 2] - hx), abs(piece_ends[q, 3] - hy)) <= _COINCIDENT
+                    ):  # fmt: skip
+                        continue
+                    hx = float(piece_ends[q, 2])
+                    hy = float(piece_ends[q, 3])
+                    part = 0.0 if stage == 0 else 1.0
+                    flags = MOVED | CHECKED
+                    if stage == 1:
+                        flags |= LINKED
+                        part = 1.0 if is_last else float(piece_part[q, 1])
+                    elif stage == 2 and connectors[k] < 0:
+                        flags = MOVED
+                    at = _put_row(
+                        at, int(piece_kind[q]), r, part, q, hx, hy, flags, g, out_kind, out_origin, out_part,
+                        out_piece, out_xy, out_flags, out_link, out_contour,
+                    )  # fmt: skip
+                    if stage == 1:
+                        out_link[at - 1, 0] = 0.0 if q == low else float(piece_part[q, 0])
+                        out_link[at - 1, 1] = part
+            k += 1
         if style > 0:
             pieces += 2
         after = int(kind[end]) if end < len(kind) else _SET_POSITION
         if after != _POSITIONING and after != _SET_POSITION:
-            out_kind[at] = _POSITIONING
-            out_origin[at] = end - 1
-            out_part[at] = 1.0
-            out_piece[at] = -1
-            out_flags[at] = 0
-            out_contour[at] = -1
             hx = float(x[end])
             hy = float(y[end])
-            at += 1
+            at = _put_row(
+                at, _POSITIONING, end - 1, 1.0, -1, hx, hy, 0, -1, out_kind, out_origin, out_part, out_piece, out_xy,
+                out_flags, out_link, out_contour,
+            )  # fmt: skip
         i = end
     return at
