@@ -21,13 +21,21 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 from nccompile.kernels.curve_points import POLYNOMIAL, Floats
 from nccompile.kernels.curves import NODES, in_plane_length
-from nccompile.kernels.legs import STATE, common_plane, leg_at, reach_along, tabulate_leg, turn_between
+from nccompile.kernels.legs import (
+    CORNER,
+    LEFT,
+    SHARPEST,
+    SHORTEST,
+    STATE,
+    Kinds,
+    Wholes,
+    common_plane,
+    corner_states,
+    cut_corner,
+)
 
-__all__ = ["blend", "blend_corners"]
+__all__ = ["blend_corners", "blend_cuts"]
 
-_SHORTEST = 1e-6  # [mm] cuts below this are not worth a segment
-_SHARPEST = 3.1405926535897932  # a path that turns back has no spline around its corner
-_CORNER, _LEFT = 1, 2
 _SPACE = 3
 
 
@@ -41,7 +49,7 @@ def _bezier(b0: float, b1: float, b2: float, b3: float, out: Floats, at: int) ->
 
 
 @kernel
-def blend(one: Floats, two: Floats, length: float, out: Floats) -> None:
+def _blend(one: Floats, two: Floats, length: float, out: Floats) -> None:
     """Three cubics, C2 inside, from state `one` to state `two`: rows in space, Shape (3, 12).
 
     length: L of the module's drawing [mm]; the better it is met, the more even the speed of the parameter.
@@ -68,7 +76,16 @@ def blend(one: Floats, two: Floats, length: float, out: Floats) -> None:
 
 
 @kernel
-def in_plane(row: Floats, plane: int) -> None:
+def blend_cuts(one: Floats, two: Floats, at_a: float, at_b: float, out: Floats) -> None:
+    """Three cubics in place of the lengths at_a and at_b [mm] before and behind a corner: rows, Shape (3, 12)."""
+    chord = 0.0
+    for c in range(3):
+        chord += (two[c] - one[c]) * (two[c] - one[c])
+    _blend(one, two, 0.5 * (at_a + at_b + sqrt(chord)), out)
+
+
+@kernel
+def _in_plane(row: Floats, plane: int) -> None:
     """Turns a row in space into one of a plane 0..2 to which it is parallel."""
     x = row[0:4].copy()
     y = row[4:8].copy()
@@ -84,10 +101,10 @@ def in_plane(row: Floats, plane: int) -> None:
 
 @kernel
 def blend_corners(
-    kinds: npt.NDArray[np.uint8], planes: npt.NDArray[np.int64], rows: Floats, points: Floats, length: Floats,
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats,
     room: Floats, may: npt.NDArray[np.bool_], reach: Floats, angle: float, before: Floats, after: Floats,
-    found: npt.NDArray[np.uint8], pieces: npt.NDArray[np.int64], piece_kind: npt.NDArray[np.uint8],
-    piece_plane: npt.NDArray[np.int64], piece_rows: Floats, piece_length: Floats,
+    found: Kinds, pieces: Wholes, piece_kind: Kinds,
+    piece_plane: Wholes, piece_rows: Floats, piece_length: Floats,
 ) -> int:  # fmt: skip
     """Fills the corners behind the rows of which `may` is set and which bend by more than `angle` [rad].
 
@@ -100,77 +117,31 @@ def blend_corners(
     nodes = np.empty((4, NODES))
     one = np.empty(STATE)
     two = np.empty(STATE)
-    scratch = np.empty(STATE)
     cubics = np.empty((3, 12))
     count = 0
     for i in range(len(may)):
         if not may[i]:
             continue
-        j = i + 1
-        ka = int(kinds[i])
-        kb = int(kinds[j])
-        pa = int(planes[i])
-        pb = int(planes[j])
-        la = float(length[i])
-        lb = float(length[j])
-        na = tabulate_leg(ka, rows[i], nodes[0], nodes[1])
-        nb = tabulate_leg(kb, rows[j], nodes[2], nodes[3])
-        leg_at(ka, pa, rows[i], points[i], points[j], la, nodes[0], nodes[1], na, la, one)
-        leg_at(kb, pb, rows[j], points[j], points[j + 1], lb, nodes[2], nodes[3], nb, 0.0, two)
-        turn = turn_between(one, two)
+        na, nb, turn = corner_states(kinds, planes, rows, points, length, i, nodes, one, two)
         if turn <= angle:
             continue
-        found[i] = _LEFT
-        far = min(float(reach[i]), float(room[i]), float(room[j]))
-        if turn > _SHARPEST or far <= _SHORTEST:
+        found[i] = LEFT
+        far = min(float(reach[i]), float(room[i]), float(room[i + 1]))
+        if turn > SHARPEST or far <= SHORTEST:
             continue
-        at_a = reach_along(
-            ka,
-            pa,
-            rows[i],
-            points[i],
-            points[j],
-            la,
-            nodes[0],
-            nodes[1],
-            na,
-            far,
-            float(room[i]),
-            True,
-            scratch,
-        )
-        at_b = reach_along(
-            kb,
-            pb,
-            rows[j],
-            points[j],
-            points[j + 1],
-            lb,
-            nodes[2],
-            nodes[3],
-            nb,
-            far,
-            float(room[j]),
-            False,
-            scratch,
-        )
-        leg_at(ka, pa, rows[i], points[i], points[j], la, nodes[0], nodes[1], na, la - at_a, one)
-        leg_at(kb, pb, rows[j], points[j], points[j + 1], lb, nodes[2], nodes[3], nb, at_b, two)
-        plane = common_plane(ka, pa, kb, pb, points[i], points[j], points[j + 1])
+        at_a, at_b = cut_corner(kinds, planes, rows, points, length, room, i, nodes, na, nb, far, one, two)
+        plane = common_plane(kinds, planes, points, i)
         number = 1
         if na == 0 and nb == 0:
             for c in range(3):
-                corner = float(points[j, c])
+                corner = float(points[i + 1, c])
                 _bezier(one[c], corner, corner, two[c], cubics[0], 4 * c)
         else:
-            chord = 0.0
-            for c in range(3):
-                chord += (two[c] - one[c]) * (two[c] - one[c])
-            blend(one, two, 0.5 * (at_a + at_b + sqrt(chord)), cubics)
+            blend_cuts(one, two, at_a, at_b, cubics)
             number = 3
         _put(cubics, number, plane, count, piece_kind, piece_plane, piece_rows, piece_length)
         count += number
-        found[i] = _CORNER
+        found[i] = CORNER
         pieces[i] = number
         before[i] = at_a
         after[i] = at_b
@@ -179,8 +150,8 @@ def blend_corners(
 
 @kernel
 def _put(
-    cubics: Floats, number: int, plane: int, at: int, piece_kind: npt.NDArray[np.uint8],
-    piece_plane: npt.NDArray[np.int64], piece_rows: Floats, piece_length: Floats,
+    cubics: Floats, number: int, plane: int, at: int, piece_kind: Kinds,
+    piece_plane: Wholes, piece_rows: Floats, piece_length: Floats,
 ) -> None:  # fmt: skip
     """Writes the cubics of one corner from place `at` on."""
     for k in range(number):
@@ -188,5 +159,5 @@ def _put(
         piece_kind[at + k] = POLYNOMIAL
         piece_plane[at + k] = plane if plane >= 0 else _SPACE
         if plane >= 0:
-            in_plane(cubics[k], plane)
+            _in_plane(cubics[k], plane)
         piece_rows[at + k] = cubics[k]

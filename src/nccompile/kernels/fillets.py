@@ -19,16 +19,25 @@ import numpy.typing as npt
 
 from nccompile.kernels import kernel
 from nccompile.kernels.arcs import through
-from nccompile.kernels.blends import blend
+from nccompile.kernels.blends import blend_cuts
 from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats
 from nccompile.kernels.curves import NODES, in_plane_length
-from nccompile.kernels.legs import STATE, common_plane, leg_at, reach_along, tabulate_leg, turn_between
+from nccompile.kernels.legs import (
+    CORNER,
+    LEFT,
+    SHARPEST,
+    SHORTEST,
+    STATE,
+    Kinds,
+    Wholes,
+    common_plane,
+    corner_states,
+    cut_corner,
+    row_at,
+)
 
 __all__ = ["round_corners"]
 
-_SHORTEST = 1e-6  # [mm] cuts below this are not worth a segment
-_SHARPEST = 3.1405926535897932  # a path that turns back has no arc that touches both ways
-_CORNER, _LEFT = 1, 2
 _SPACE = 3
 
 _STEPS = 30  # of Newton's method, which needs about five
@@ -41,7 +50,7 @@ _JUST = 1.0 + 1e-9
 _FLAT = 1e-12  # determinant of Newton's matrix below which both segments are parallel
 
 _QUARTER_MISS = (
-    2.8e-4  # of the radius: the farthest a cubic is from an arc of 90 degrees; it falls with the 6th power
+    2.8e-4  # of the radius: a cubic is that far from an arc of 90 degrees; it falls with the 6th power
 )
 _MOST_PIECES = 32
 
@@ -117,10 +126,10 @@ def _space_arc(one: Floats, two: Floats, turn: float, radius: float, count: int,
 
 @kernel
 def round_corners(
-    kinds: npt.NDArray[np.uint8], planes: npt.NDArray[np.int64], rows: Floats, points: Floats, length: Floats,
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats,
     room: Floats, may: npt.NDArray[np.bool_], wanted: Floats, is_distance: bool, tolerance: float, angle: float,
-    before: Floats, after: Floats, found: npt.NDArray[np.uint8], pieces: npt.NDArray[np.int64],
-    piece_kind: npt.NDArray[np.uint8], piece_plane: npt.NDArray[np.int64], piece_rows: Floats, piece_length: Floats,
+    before: Floats, after: Floats, found: Kinds, pieces: Wholes,
+    piece_kind: Kinds, piece_plane: Wholes, piece_rows: Floats, piece_length: Floats,
 ) -> int:  # fmt: skip
     """Fills corners as `kernels.blends.blend_corners`, with arcs.
 
@@ -131,7 +140,6 @@ def round_corners(
     nodes = np.empty((4, NODES))
     one = np.empty(STATE)
     two = np.empty(STATE)
-    scratch = np.empty(STATE)
     cuts = np.empty(4)
     count = 0
     for i in range(len(may)):
@@ -139,65 +147,32 @@ def round_corners(
             continue
         if count + _MOST_PIECES > len(piece_kind):
             return -1
-        j = i + 1
-        ka = int(kinds[i])
-        kb = int(kinds[j])
-        pa = int(planes[i])
-        pb = int(planes[j])
-        la = float(length[i])
-        lb = float(length[j])
-        na = tabulate_leg(ka, rows[i], nodes[0], nodes[1])
-        nb = tabulate_leg(kb, rows[j], nodes[2], nodes[3])
-        leg_at(ka, pa, rows[i], points[i], points[j], la, nodes[0], nodes[1], na, la, one)
-        leg_at(kb, pb, rows[j], points[j], points[j + 1], lb, nodes[2], nodes[3], nb, 0.0, two)
-        turn = turn_between(one, two)
+        na, nb, turn = corner_states(kinds, planes, rows, points, length, i, nodes, one, two)
         if turn <= angle:
             continue
-        found[i] = _LEFT
+        found[i] = LEFT
         r = float(wanted[i])
-        short = min(float(room[i]), float(room[j]))
-        if turn > _SHARPEST or r <= 0.0 or short <= _SHORTEST:
+        short = min(float(room[i]), float(room[i + 1]))
+        if turn > SHARPEST or r <= 0.0 or short <= SHORTEST:
             continue
         half = tan(0.5 * turn)
         reach = min(r if is_distance else min(r * half, r / tan(0.25 * turn)), short)
-        if reach <= _SHORTEST:
+        if reach <= SHORTEST:
             continue
-        plane = common_plane(ka, pa, kb, pb, points[i], points[j], points[j + 1])
+        plane = common_plane(kinds, planes, points, i)
         number = 1
-        at_a = reach
-        at_b = reach
         if plane >= 0 and (na > 0 or nb > 0):
-            ok = _greatest(
-                ka, pa, rows[i], points[i], points[j], la, na, float(room[i]),
-                kb, pb, rows[j], points[j + 1], lb, nb, float(room[j]),
-                nodes, plane, reach / half, r, one, two, cuts, piece_rows[count],
-            )  # fmt: skip
-            if not ok:
+            if not _greatest(
+                kinds, planes, rows, points, length, room, i, nodes, na, nb, plane, reach / half, r, one, two, cuts,
+                piece_rows[count],
+            ):  # fmt: skip
                 continue
             at_a = float(cuts[0])
             at_b = float(cuts[1])
         else:
-            at_a = reach_along(
-                ka,
-                pa,
-                rows[i],
-                points[i],
-                points[j],
-                la,
-                nodes[0],
-                nodes[1],
-                na,
-                reach,
-                float(room[i]),
-                True,
-                scratch,
+            at_a, at_b = cut_corner(
+                kinds, planes, rows, points, length, room, i, nodes, na, nb, reach, one, two
             )
-            at_b = reach_along(
-                kb, pb, rows[j], points[j], points[j + 1], lb, nodes[2], nodes[3], nb, reach, float(room[j]), False,
-                scratch,
-            )  # fmt: skip
-            leg_at(ka, pa, rows[i], points[i], points[j], la, nodes[0], nodes[1], na, la - at_a, one)
-            leg_at(kb, pb, rows[j], points[j], points[j + 1], lb, nodes[2], nodes[3], nb, at_b, two)
             if plane >= 0:
                 u = _u_of(plane)
                 v = _v_of(plane)
@@ -210,17 +185,14 @@ def round_corners(
                 number = _pieces_of(reach / half, turn, tolerance)
                 _space_arc(one, two, turn, reach / half, number, piece_rows[count:])
             else:
-                chord = 0.0
-                for c in range(3):
-                    chord += (two[c] - one[c]) * (two[c] - one[c])
-                blend(one, two, 0.5 * (at_a + at_b + sqrt(chord)), piece_rows[count:])
+                blend_cuts(one, two, at_a, at_b, piece_rows[count:])
                 number = 3
         for k in range(number):
             piece_kind[count + k] = ARC if plane >= 0 else POLYNOMIAL
             piece_plane[count + k] = plane if plane >= 0 else _SPACE
             piece_length[count + k] = in_plane_length(int(piece_kind[count + k]), piece_rows[count + k])
         count += number
-        found[i] = _CORNER
+        found[i] = CORNER
         pieces[i] = number
         before[i] = at_a
         after[i] = at_b
@@ -229,11 +201,10 @@ def round_corners(
 
 @kernel
 def _greatest(
-    ka: int, pa: int, row_a: Floats, a: Floats, v: Floats, la: float, na: int, room_a: float,
-    kb: int, pb: int, row_b: Floats, b: Floats, lb: float, nb: int, room_b: float,
-    nodes: Floats, plane: int, radius: float, most: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, room: Floats, i: int, nodes: Floats,
+    na: int, nb: int, plane: int, radius: float, most: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
 ) -> bool:  # fmt: skip
-    """The greatest arc up to `radius` that touches both segments a-v and v-b within their room, at most `most` from v.
+    """The greatest arc up to `radius` that touches rows i and i + 1 within their room, at most `most` from the corner.
 
     Fills cuts[0..1], what it cuts off them, and its row; False if no arc down to a trifle was found.
     """
@@ -243,8 +214,7 @@ def _greatest(
     trial = radius
     for tries in range(_TRIES):
         if _touch(
-            ka, pa, row_a, a, v, la, na, room_a, kb, pb, row_b, b, lb, nb, room_b, nodes, plane, trial, most, one, two,
-            cuts, out,
+            kinds, planes, rows, points, length, room, i, nodes, na, nb, plane, trial, most, one, two, cuts, out
         ):  # fmt: skip
             good = True
             cuts[0] = cuts[2]
@@ -257,22 +227,24 @@ def _greatest(
         if good and (high - low <= _SPLIT * high or tries > _ENOUGH):
             break
         trial = 0.5 * (low + high)
-        if trial < _SHORTEST:
+        if trial < SHORTEST:
             break
     return good
 
 
 @kernel
 def _touch(
-    ka: int, pa: int, row_a: Floats, a: Floats, v: Floats, la: float, na: int, room_a: float,
-    kb: int, pb: int, row_b: Floats, b: Floats, lb: float, nb: int, room_b: float,
-    nodes: Floats, plane: int, radius: float, most: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, room: Floats, i: int, nodes: Floats,
+    na: int, nb: int, plane: int, radius: float, most: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
 ) -> bool:  # fmt: skip
     """The arc of this radius: fills cuts[2..3] and its row, False if Newton does not find one that is allowed."""
     x = _u_of(plane)
     y = _v_of(plane)
-    leg_at(ka, pa, row_a, a, v, la, nodes[0], nodes[1], na, la, one)
-    leg_at(kb, pb, row_b, v, b, lb, nodes[2], nodes[3], nb, 0.0, two)
+    la, lb = float(length[i]), float(length[i + 1])
+    room_a, room_b = float(room[i]), float(room[i + 1])
+    v = points[i + 1]
+    row_at(kinds, planes, rows, points, length, i, nodes[:2], na, la, one)
+    row_at(kinds, planes, rows, points, length, i + 1, nodes[2:], nb, 0.0, two)
     bend = one[3 + x] * two[3 + y] - one[3 + y] * two[3 + x]
     side = 1.0 if bend > 0.0 else -1.0
     turn = atan2(abs(bend), one[3 + x] * two[3 + x] + one[3 + y] * two[3 + y])
@@ -280,8 +252,8 @@ def _touch(
     sa = la - cut
     sb = cut
     for _ in range(_STEPS):
-        leg_at(ka, pa, row_a, a, v, la, nodes[0], nodes[1], na, sa, one)
-        leg_at(kb, pb, row_b, v, b, lb, nodes[2], nodes[3], nb, sb, two)
+        row_at(kinds, planes, rows, points, length, i, nodes[:2], na, sa, one)
+        row_at(kinds, planes, rows, points, length, i + 1, nodes[2:], nb, sb, two)
         ax = -side * float(one[3 + y])
         ay = side * float(one[3 + x])
         bx = -side * float(two[3 + y])

@@ -10,6 +10,7 @@ Lines, arcs, helices, ellipses and cubics by one function, so a corner asks both
 from __future__ import annotations
 
 from math import asin, atan2, cos, sin, sqrt
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -28,39 +29,45 @@ from nccompile.kernels.curve_points import (
 from nccompile.kernels.curves import NODES, parameter, tabulate
 
 __all__ = [
-    "STATE",
-    "common_plane",
-    "cut_legs",
-    "leg_at",
-    "parameter_at",
-    "reach_along",
-    "tabulate_leg",
-    "turn_between",
-]
+    "CORNER", "LEFT", "SHARPEST", "SHORTEST", "STATE", "common_plane", "corner_states", "cut_corner",
+    "cut_legs", "row_at",
+]  # fmt: skip
 
 STATE = 9
 """Numbers of a state."""
+
+CORNER, LEFT = 1, 2
+"""What became of a corner: it was filled, or left as it is."""
+
+SHORTEST = 1e-6
+"""[mm] Cuts below this are not worth a segment."""
+
+SHARPEST = 3.1405926535897932
+"""[rad] A path that bends by more turns back: no arc and no spline fills its corner."""
+
+Kinds: TypeAlias = npt.NDArray[np.uint8]
+Wholes: TypeAlias = npt.NDArray[np.int64]
 
 _SPACE = 3
 _HALVINGS = 50
 
 
 @kernel
-def is_straight(kind: int) -> bool:
+def _is_straight(kind: int) -> bool:
     """Whether a segment of this kind is a straight line."""
     return kind < ARC or kind > POLYNOMIAL
 
 
 @kernel
-def tabulate_leg(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats) -> int:
+def _tabulate_leg(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats) -> int:
     """Fills the arc-length table of a segment; returns its rows, 0 for a line, which needs none."""
-    if is_straight(kind):
+    if _is_straight(kind):
         return 0
     return tabulate(kind, p, nodes_u, nodes_s)
 
 
 @kernel
-def parameter_at(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats, count: int, share: float) -> float:
+def _parameter_at(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats, count: int, share: float) -> float:
     """The curve parameter at a share 0..1 of the length."""
     if count == 0 or kind == ARC or share <= 0.0 or share >= 1.0:
         return min(max(share, 0.0), 1.0)
@@ -97,11 +104,11 @@ def _curvature(kind: int, p: Floats, u: float) -> tuple[float, float, float]:
 
 
 @kernel
-def leg_at(
+def _leg_at(
     kind: int, plane: int, p: Floats, a: Floats, b: Floats, length: float, nodes_u: Floats, nodes_s: Floats,
     count: int, s: float, out: Floats,
 ) -> None:  # fmt: skip
-    """Writes the state at s [mm] of a segment from a to b, with its table of `tabulate_leg`."""
+    """Writes the state at s [mm] of a segment from a to b, with its table of `_tabulate_leg`."""
     share = s / length if length > 0.0 else 0.0
     if count == 0:
         size = 0.0
@@ -115,7 +122,7 @@ def leg_at(
             out[3 + i] = step / size if size > 0.0 else 0.0
             out[6 + i] = 0.0
         return
-    u = parameter_at(kind, p, nodes_u, nodes_s, count, share)
+    u = _parameter_at(kind, p, nodes_u, nodes_s, count, share)
     inside = float(nodes_s[count - 1])
     x = y = z = tx = ty = tz = kx = ky = kz = 0.0
     if kind == ARC:
@@ -152,7 +159,45 @@ def leg_at(
 
 
 @kernel
-def turn_between(one: Floats, two: Floats) -> float:
+def row_at(
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, i: int, nodes: Floats, count: int,
+    s: float, out: Floats,
+) -> None:  # fmt: skip
+    """Writes the state at s [mm] of row i of a path, with its table of `count` rows: nodes, Shape (2, NODES)."""
+    _leg_at(
+        int(kinds[i]), int(planes[i]), rows[i], points[i], points[i + 1], float(length[i]), nodes[0], nodes[1], count,
+        s, out,
+    )  # fmt: skip
+
+
+@kernel
+def corner_states(
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, i: int, nodes: Floats, one: Floats,
+    two: Floats,
+) -> tuple[int, int, float]:  # fmt: skip
+    """Writes the states before and behind the corner at the end of row i.
+
+    Args:     nodes: Shape (4, NODES), out: the tables of row i and of row i + 1.
+    Returns:  rows of both tables, and the bend 0..pi [rad].
+    """
+    na = _tabulate_leg(int(kinds[i]), rows[i], nodes[0], nodes[1])
+    nb = _tabulate_leg(int(kinds[i + 1]), rows[i + 1], nodes[2], nodes[3])
+    _cut_states(kinds, planes, rows, points, length, i, nodes, na, nb, 0.0, 0.0, one, two)
+    return na, nb, _turn_between(one, two)
+
+
+@kernel
+def _cut_states(
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, i: int, nodes: Floats, na: int, nb: int,
+    at_a: float, at_b: float, one: Floats, two: Floats,
+) -> None:  # fmt: skip
+    """Writes the states where at_a [mm] is cut off the end of row i and at_b off the start of row i + 1."""
+    row_at(kinds, planes, rows, points, length, i, nodes[:2], na, float(length[i]) - at_a, one)
+    row_at(kinds, planes, rows, points, length, i + 1, nodes[2:], nb, at_b, two)
+
+
+@kernel
+def _turn_between(one: Floats, two: Floats) -> float:
     """The angle [rad] 0..pi from the direction of one state to that of another."""
     cx = one[4] * two[5] - one[5] * two[4]
     cy = one[5] * two[3] - one[3] * two[5]
@@ -162,42 +207,44 @@ def turn_between(one: Floats, two: Floats) -> float:
 
 
 @kernel
-def common_plane(kind0: int, plane0: int, kind1: int, plane1: int, a: Floats, v: Floats, b: Floats) -> int:
-    """The plane 0..2 (X-Y, Z-X, Y-Z) parallel to which both segments a-v and v-b stay, -1 if there is none."""
+def common_plane(kinds: Kinds, planes: Wholes, points: Floats, i: int) -> int:
+    """The plane 0..2 (X-Y, Z-X, Y-Z) parallel to which rows i and i + 1 both stay, -1 if there is none."""
     for plane in range(_SPACE):
         third = 2 - plane
-        flat = a[third] == v[third] and v[third] == b[third]
-        fits0 = is_straight(kind0) or plane0 == plane
-        fits1 = is_straight(kind1) or plane1 == plane
+        flat = points[i, third] == points[i + 1, third] and points[i + 1, third] == points[i + 2, third]
+        fits0 = _is_straight(int(kinds[i])) or planes[i] == plane
+        fits1 = _is_straight(int(kinds[i + 1])) or planes[i + 1] == plane
         if flat and fits0 and fits1:
             return plane
     return -1
 
 
 @kernel
-def reach_along(
-    kind: int, plane: int, p: Floats, a: Floats, b: Floats, length: float, nodes_u: Floats, nodes_s: Floats,
-    count: int, reach: float, room: float, at_end: bool, out: Floats,
+def _reach_along(
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, i: int, nodes: Floats, count: int,
+    reach: float, room: float, at_end: bool, out: Floats,
 ) -> float:  # fmt: skip
-    """The length [mm] to cut off a segment so that the cut is `reach` from its end (or start), at most `room`.
+    """The length [mm] to cut off row i so that the cut is `reach` from its end (or start), at most `room`.
 
-    out: Shape (STATE,), scratch.  A line and a flat arc have it in closed form, the others by bisection.
+    nodes, count: as in `row_at`;  out: Shape (STATE,), scratch.  A line and a flat arc have it in closed form, the
+    others by bisection.
     """
     if count == 0:
         return min(reach, room)
-    if kind == ARC and a[2 - plane] == b[2 - plane]:
-        share = 0.5 * reach / float(p[2])
-        return min(2.0 * float(p[2]) * asin(share), room) if share < 1.0 else room
-    v = b if at_end else a
+    third = 2 - int(planes[i])
+    if kinds[i] == ARC and points[i, third] == points[i + 1, third]:
+        share = 0.5 * reach / float(rows[i, 2])
+        return min(2.0 * float(rows[i, 2]) * asin(share), room) if share < 1.0 else room
+    v = points[i + 1] if at_end else points[i]
     low = 0.0
     high = room
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        s = length - middle if at_end else middle
-        leg_at(kind, plane, p, a, b, length, nodes_u, nodes_s, count, s, out)
+        s = float(length[i]) - middle if at_end else middle
+        row_at(kinds, planes, rows, points, length, i, nodes, count, s, out)
         square = 0.0
-        for i in range(3):
-            square += (out[i] - v[i]) * (out[i] - v[i])
+        for c in range(3):
+            square += (out[c] - v[c]) * (out[c] - v[c])
         if square < reach * reach:
             low = middle
         else:
@@ -206,32 +253,47 @@ def reach_along(
 
 
 @kernel
+def cut_corner(
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, room: Floats, i: int, nodes: Floats,
+    na: int, nb: int, reach: float, one: Floats, two: Floats,
+) -> tuple[float, float]:  # fmt: skip
+    """Cuts both rows `reach` [mm] from the corner behind row i, but not by more than their room.
+
+    Returns:  the lengths cut off;  out: the states at the cuts.
+    """
+    at_a = _reach_along(
+        kinds, planes, rows, points, length, i, nodes[:2], na, reach, float(room[i]), True, one
+    )  # fmt: skip
+    at_b = _reach_along(
+        kinds, planes, rows, points, length, i + 1, nodes[2:], nb, reach, float(room[i + 1]), False, two
+    )  # fmt: skip
+    _cut_states(kinds, planes, rows, points, length, i, nodes, na, nb, at_a, at_b, one, two)
+    return at_a, at_b
+
+
+@kernel
 def cut_legs(
-    kinds: npt.NDArray[np.uint8], planes: npt.NDArray[np.int64], rows: Floats, points: Floats, length: Floats,
-    picked: npt.NDArray[np.int64], s0: Floats, s1: Floats, out_rows: Floats, out_starts: Floats, out_ends: Floats,
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, picked: Wholes, s0: Floats, s1: Floats,
+    out_rows: Floats, out_starts: Floats, out_ends: Floats,
 ) -> None:  # fmt: skip
     """The parts s0..s1 [mm] of segments: curve rows, Shape (m, 12), their starts and ends X, Y, Z, Shape (m, 3).
 
     Args:     columns of the path as in `kernels.distance`;  picked: Shape (m,), which segments;  s0, s1: Shape (m,).
     """
-    nodes_u = np.empty(NODES)
-    nodes_s = np.empty(NODES)
+    nodes = np.empty((2, NODES))
     state = np.empty(STATE)
     for j in range(len(picked)):
         i = int(picked[j])
         kind = int(kinds[i])
-        p = rows[i]
-        count = tabulate_leg(kind, p, nodes_u, nodes_s)
-        whole = float(length[i])
-        plane = int(planes[i])
-        leg_at(kind, plane, p, points[i], points[i + 1], whole, nodes_u, nodes_s, count, float(s0[j]), state)
+        count = _tabulate_leg(kind, rows[i], nodes[0], nodes[1])
+        row_at(kinds, planes, rows, points, length, i, nodes, count, float(s0[j]), state)
         for c in range(3):
             out_starts[j, c] = state[c]
-        leg_at(kind, plane, p, points[i], points[i + 1], whole, nodes_u, nodes_s, count, float(s1[j]), state)
+        row_at(kinds, planes, rows, points, length, i, nodes, count, float(s1[j]), state)
         for c in range(3):
             out_ends[j, c] = state[c]
         if count:
-            scale = 1.0 / whole if whole > 0.0 else 0.0
-            u0 = parameter_at(kind, p, nodes_u, nodes_s, count, scale * float(s0[j]))
-            u1 = parameter_at(kind, p, nodes_u, nodes_s, count, scale * float(s1[j]))
-            curve_piece(kind, p, u0, u1, out_rows[j])
+            scale = 1.0 / float(length[i]) if length[i] > 0.0 else 0.0
+            u0 = _parameter_at(kind, rows[i], nodes[0], nodes[1], count, scale * float(s0[j]))
+            u1 = _parameter_at(kind, rows[i], nodes[0], nodes[1], count, scale * float(s1[j]))
+            curve_piece(kind, rows[i], u0, u1, out_rows[j])

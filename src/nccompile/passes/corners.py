@@ -46,7 +46,6 @@ __all__ = ["CornerPass", "Fillings", "Legs"]
 
 Whole = npt.NDArray[np.int64]
 
-_CORNER, _LEFT = 1, 2
 _A_CORNER = 3
 _MORE = 12
 
@@ -128,8 +127,8 @@ class CornerPass(Pass):
             plain = path.rows(0, count)
             return plain.replace(mark=plain.mark & ~np.uint16(self.start_mark)), 0.0
         corners = self._filled(path, may)
-        context.report.counts["corners"] += int((corners.found == _CORNER).sum())
-        context.report.counts["corners left"] += int((corners.found == _LEFT).sum())
+        context.report.counts["corners"] += int((corners.found == kernels.CORNER).sum())
+        context.report.counts["corners left"] += int((corners.found == kernels.LEFT).sum())
         out, links = _rebuilt(path, count, trim, corners, self.start_mark)
         ahead = float(corners.after[count - 1])
         if context.measure and count:
