@@ -33,10 +33,9 @@ from nccompile.kernels.legs import (
     corner_states,
     cut_corner,
 )
+from nccompile.kernels.planes import SPACE
 
 __all__ = ["blend_corners", "blend_cuts"]
-
-_SPACE = 3
 
 
 @kernel
@@ -157,7 +156,7 @@ def _put(
     for k in range(number):
         piece_length[at + k] = in_plane_length(POLYNOMIAL, cubics[k])
         piece_kind[at + k] = POLYNOMIAL
-        piece_plane[at + k] = plane if plane >= 0 else _SPACE
+        piece_plane[at + k] = plane if plane >= 0 else SPACE
         if plane >= 0:
             _in_plane(cubics[k], plane)
         piece_rows[at + k] = cubics[k]

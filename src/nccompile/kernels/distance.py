@@ -13,6 +13,7 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 from nccompile.kernels.curve_parts import way_share
 from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, derivative3, point3
+from nccompile.kernels.planes import SPACE, embed
 
 __all__ = ["deviations", "distance", "place_on", "sample_rows"]
 
@@ -34,17 +35,12 @@ def place_on(
             float(a[2]) + u * (float(b[2]) - float(a[2])),
         )
     x, y, z = point3(kind, p, u)
-    if plane == 3:
+    if plane == SPACE:
         return x, y, z
     third = 2 - plane  # XY leaves Z over, ZX leaves Y, YZ leaves X
     rise = float(b[third]) - float(a[third])
     way = way_share(kind, p, u) if rise != 0.0 else u
-    w = float(a[third]) + way * rise
-    if plane == 0:
-        return x, y, w
-    if plane == 1:
-        return y, w, x
-    return w, x, y
+    return embed(plane, x, y, float(a[third]) + way * rise)
 
 
 @kernel
@@ -65,7 +61,7 @@ def distance(kind: int, plane: int, p: Floats, a: Floats, b: Floats, x: float, y
         ez -= t * dz
         return sqrt(ex * ex + ey * ey + ez * ez)
     best = inf
-    rise = 0.0 if plane == 3 else float(b[2 - plane]) - float(a[2 - plane])
+    rise = 0.0 if plane == SPACE else float(b[2 - plane]) - float(a[2 - plane])
     if kind == ARC and rise == 0.0:
         u = _angle_share(plane, p, x, y, z)
         for guess in (0.0, 1.0, u):
@@ -109,11 +105,7 @@ def distance(kind: int, plane: int, p: Floats, a: Floats, b: Floats, x: float, y
 def _in_space(plane: int, kind: int, p: Floats, u: float, rise: float) -> tuple[float, float, float]:
     """dP/du as X, Y, Z; the third axis of a plane moves by `rise` over the whole curve."""
     x, y, z = derivative3(kind, p, u)
-    if plane == 1:
-        return y, rise, x
-    if plane == 2:
-        return rise, x, y
-    return x, y, z if plane == 3 else rise
+    return embed(plane, x, y, z if plane == SPACE else rise)
 
 
 @kernel

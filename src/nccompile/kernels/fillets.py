@@ -35,10 +35,10 @@ from nccompile.kernels.legs import (
     cut_corner,
     row_at,
 )
+from nccompile.kernels.planes import SPACE, plane_axes
 
 __all__ = ["round_corners"]
 
-_SPACE = 3
 
 _STEPS = 30  # of Newton's method, which needs about five
 _REACHED = 1e-12  # [mm] and of the radius: both ways to the centre lead to one point
@@ -56,22 +56,9 @@ _MOST_PIECES = 32
 
 
 @kernel
-def _u_of(plane: int) -> int:
-    """The first axis of a plane 0..2: X, Z, Y."""
-    return 0 if plane == 0 else 3 - plane
-
-
-@kernel
-def _v_of(plane: int) -> int:
-    """The second axis of a plane 0..2: Y, X, Z."""
-    return 1 if plane == 0 else (0 if plane == 1 else 2)
-
-
-@kernel
 def _arc_row(one: Floats, two: Floats, plane: int, cx: float, cy: float, left: bool, out: Floats) -> None:
     """The arc between two states; its centre is moved onto their bisector, so that both ends are exact."""
-    u = _u_of(plane)
-    v = _v_of(plane)
+    u, v = plane_axes(plane)
     x0 = float(one[u])
     y0 = float(one[v])
     x1 = float(two[u])
@@ -174,8 +161,7 @@ def round_corners(
                 kinds, planes, rows, points, length, room, i, nodes, na, nb, reach, one, two
             )
             if plane >= 0:
-                u = _u_of(plane)
-                v = _v_of(plane)
+                u, v = plane_axes(plane)
                 left = one[3 + u] * two[3 + v] - one[3 + v] * two[3 + u] > 0.0
                 away = reach / half if left else -reach / half
                 cx = float(one[u]) - away * float(one[3 + v])
@@ -189,7 +175,7 @@ def round_corners(
                 number = 3
         for k in range(number):
             piece_kind[count + k] = ARC if plane >= 0 else POLYNOMIAL
-            piece_plane[count + k] = plane if plane >= 0 else _SPACE
+            piece_plane[count + k] = plane if plane >= 0 else SPACE
             piece_length[count + k] = in_plane_length(int(piece_kind[count + k]), piece_rows[count + k])
         count += number
         found[i] = CORNER
@@ -238,8 +224,7 @@ def _touch(
     na: int, nb: int, plane: int, radius: float, most: float, one: Floats, two: Floats, cuts: Floats, out: Floats,
 ) -> bool:  # fmt: skip
     """The arc of this radius: fills cuts[2..3] and its row, False if Newton does not find one that is allowed."""
-    x = _u_of(plane)
-    y = _v_of(plane)
+    x, y = plane_axes(plane)
     la, lb = float(length[i]), float(length[i + 1])
     room_a, room_b = float(room[i]), float(room[i + 1])
     v = points[i + 1]

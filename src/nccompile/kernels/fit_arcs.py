@@ -24,6 +24,7 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.kernels import kernel
+from nccompile.kernels.planes import plane_axes
 
 __all__ = ["fit_arcs", "fit_run"]
 
@@ -252,8 +253,7 @@ def fit_arcs(
             while limit < n and not breaks[limit]:
                 limit += 1
         plane = _plane(points, first, min(first + 3, limit)) if planes else 0
-        u = 0 if plane == 0 else (2 if plane == 1 else 1)
-        v = 1 if plane == 0 else (0 if plane == 1 else 2)
+        u, v = plane_axes(plane)
         w = 2 - plane
         good = first + 1
         rows[count, 2] = 0.0

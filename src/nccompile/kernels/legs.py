@@ -27,6 +27,7 @@ from nccompile.kernels.curve_points import (
     tangent3,
 )
 from nccompile.kernels.curves import NODES, parameter, tabulate
+from nccompile.kernels.planes import SPACE, embed
 
 __all__ = [
     "CORNER", "LEFT", "SHARPEST", "SHORTEST", "STATE", "common_plane", "corner_states", "cut_corner",
@@ -48,7 +49,6 @@ SHARPEST = 3.1405926535897932
 Kinds: TypeAlias = npt.NDArray[np.uint8]
 Wholes: TypeAlias = npt.NDArray[np.int64]
 
-_SPACE = 3
 _HALVINGS = 50
 
 
@@ -72,23 +72,6 @@ def _parameter_at(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats, count:
     if count == 0 or kind == ARC or share <= 0.0 or share >= 1.0:
         return min(max(share, 0.0), 1.0)
     return parameter(kind, p, nodes_u, nodes_s, count, share * float(nodes_s[count - 1]))
-
-
-@kernel
-def _embed(plane: int, u: float, v: float, w: float, out: Floats, at: int) -> None:
-    """Writes plane coordinates and the third axis as X, Y, Z."""
-    if plane == 1:
-        out[at] = v
-        out[at + 1] = w
-        out[at + 2] = u
-    elif plane == 2:
-        out[at] = w
-        out[at + 1] = u
-        out[at + 2] = v
-    else:
-        out[at] = u
-        out[at + 1] = v
-        out[at + 2] = w
 
 
 @kernel
@@ -141,7 +124,7 @@ def _leg_at(
         tx, ty, tz = tangent3(kind, p, u)
         kx, ky, kz = _curvature(kind, p, u)
     slant = 1.0
-    if plane != _SPACE:
+    if plane != SPACE:
         third = 2 - plane  # XY leaves Z over, ZX leaves Y, YZ leaves X
         rise = float(b[third]) - float(a[third])
         z = float(a[third]) + share * rise
@@ -152,10 +135,10 @@ def _leg_at(
         tx /= size
         ty /= size
         tz /= size
-    _embed(plane, x, y, z, out, 0)
-    _embed(plane, tx, ty, tz, out, 3)
     bend = slant * slant
-    _embed(plane, bend * kx, bend * ky, bend * kz, out, 6)
+    out[0], out[1], out[2] = embed(plane, x, y, z)
+    out[3], out[4], out[5] = embed(plane, tx, ty, tz)
+    out[6], out[7], out[8] = embed(plane, bend * kx, bend * ky, bend * kz)
 
 
 @kernel
@@ -209,7 +192,7 @@ def _turn_between(one: Floats, two: Floats) -> float:
 @kernel
 def common_plane(kinds: Kinds, planes: Wholes, points: Floats, i: int) -> int:
     """The plane 0..2 (X-Y, Z-X, Y-Z) parallel to which rows i and i + 1 both stay, -1 if there is none."""
-    for plane in range(_SPACE):
+    for plane in range(SPACE):
         third = 2 - plane
         flat = points[i, third] == points[i + 1, third] and points[i + 1, third] == points[i + 2, third]
         fits0 = _is_straight(int(kinds[i])) or planes[i] == plane

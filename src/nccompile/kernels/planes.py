@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from nccompile.kernels import kernel
 
-__all__ = ["SPACE", "in_plane_share", "least_in_plane", "moves", "plane_axes"]
+__all__ = ["SPACE", "embed", "in_plane_share", "least_in_plane", "moves", "plane_axes"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -29,6 +29,16 @@ def plane_axes(plane: int) -> tuple[int, int]:
     if plane == 2:
         return 1, 2
     return 0, 1
+
+
+@kernel
+def embed(plane: int, u: float, v: float, w: float) -> tuple[float, float, float]:
+    """Coordinates in a plane and on the axis across it as X, Y, Z; those of space as they are."""
+    if plane == 1:
+        return v, w, u
+    if plane == 2:
+        return w, u, v
+    return u, v, w
 
 
 @kernel
