@@ -228,8 +228,8 @@ def _touch(
     la, lb = float(length[i]), float(length[i + 1])
     room_a, room_b = float(room[i]), float(room[i + 1])
     v = points[i + 1]
-    row_at(kinds, planes, rows, points, length, i, nodes[:2], na, la, one)
-    row_at(kinds, planes, rows, points, length, i + 1, nodes[2:], nb, 0.0, two)
+    row_at(kinds, planes, rows, points, length, i, nodes, 0, na, la, one)
+    row_at(kinds, planes, rows, points, length, i + 1, nodes, 2, nb, 0.0, two)
     bend = one[3 + x] * two[3 + y] - one[3 + y] * two[3 + x]
     side = 1.0 if bend > 0.0 else -1.0
     turn = atan2(abs(bend), one[3 + x] * two[3 + x] + one[3 + y] * two[3 + y])
@@ -237,8 +237,8 @@ def _touch(
     sa = la - cut
     sb = cut
     for _ in range(_STEPS):
-        row_at(kinds, planes, rows, points, length, i, nodes[:2], na, sa, one)
-        row_at(kinds, planes, rows, points, length, i + 1, nodes[2:], nb, sb, two)
+        row_at(kinds, planes, rows, points, length, i, nodes, 0, na, sa, one)
+        row_at(kinds, planes, rows, points, length, i + 1, nodes, 2, nb, sb, two)
         ax = -side * float(one[3 + y])
         ay = side * float(one[3 + x])
         bx = -side * float(two[3 + y])

@@ -59,11 +59,11 @@ def _is_straight(kind: int) -> bool:
 
 
 @kernel
-def _tabulate_leg(kind: int, p: Floats, nodes_u: Floats, nodes_s: Floats) -> int:
-    """Fills the arc-length table of a segment; returns its rows, 0 for a line, which needs none."""
-    if _is_straight(kind):
+def _tabulate(kinds: Kinds, rows: Floats, i: int, nodes: Floats, table: int) -> int:
+    """Fills nodes[table], nodes[table + 1], the arc-length table of row i; returns its rows, 0 for a line: none."""
+    if _is_straight(int(kinds[i])):
         return 0
-    return tabulate(kind, p, nodes_u, nodes_s)
+    return tabulate(int(kinds[i]), rows[i], nodes[table], nodes[table + 1])
 
 
 @kernel
@@ -87,24 +87,12 @@ def _curvature(kind: int, p: Floats, u: float) -> tuple[float, float, float]:
 
 
 @kernel
-def _leg_at(
+def _curve_at(
     kind: int, plane: int, p: Floats, a: Floats, b: Floats, length: float, nodes_u: Floats, nodes_s: Floats,
     count: int, s: float, out: Floats,
 ) -> None:  # fmt: skip
-    """Writes the state at s [mm] of a segment from a to b, with its table of `_tabulate_leg`."""
+    """Writes the state at s [mm] of a segment from a to b, a curve, with its table of `tabulate`."""
     share = s / length if length > 0.0 else 0.0
-    if count == 0:
-        size = 0.0
-        for i in range(3):
-            step = float(b[i]) - float(a[i])
-            size += step * step
-        size = sqrt(size)
-        for i in range(3):
-            step = float(b[i]) - float(a[i])
-            out[i] = float(a[i]) + share * step
-            out[3 + i] = step / size if size > 0.0 else 0.0
-            out[6 + i] = 0.0
-        return
     u = _parameter_at(kind, p, nodes_u, nodes_s, count, share)
     inside = float(nodes_s[count - 1])
     x = y = z = tx = ty = tz = kx = ky = kz = 0.0
@@ -143,14 +131,27 @@ def _leg_at(
 
 @kernel
 def row_at(
-    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, i: int, nodes: Floats, count: int,
-    s: float, out: Floats,
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, i: int, nodes: Floats, table: int,
+    count: int, s: float, out: Floats,
 ) -> None:  # fmt: skip
-    """Writes the state at s [mm] of row i of a path, with its table of `count` rows: nodes, Shape (2, NODES)."""
-    _leg_at(
-        int(kinds[i]), int(planes[i]), rows[i], points[i], points[i + 1], float(length[i]), nodes[0], nodes[1], count,
-        s, out,
-    )  # fmt: skip
+    """Writes the state at s [mm] of row i of a path; nodes[table], nodes[table + 1]: its table of `count` rows."""
+    if count:
+        _curve_at(
+            int(kinds[i]), int(planes[i]), rows[i], points[i], points[i + 1], float(length[i]), nodes[table],
+            nodes[table + 1], count, s, out,
+        )  # fmt: skip
+        return
+    share = s / float(length[i]) if length[i] > 0.0 else 0.0
+    size = 0.0
+    for c in range(3):
+        step = float(points[i + 1, c]) - float(points[i, c])
+        size += step * step
+    size = sqrt(size)
+    for c in range(3):
+        step = float(points[i + 1, c]) - float(points[i, c])
+        out[c] = float(points[i, c]) + share * step
+        out[3 + c] = step / size if size > 0.0 else 0.0
+        out[6 + c] = 0.0
 
 
 @kernel
@@ -163,8 +164,8 @@ def corner_states(
     Args:     nodes: Shape (4, NODES), out: the tables of row i and of row i + 1.
     Returns:  rows of both tables, and the bend 0..pi [rad].
     """
-    na = _tabulate_leg(int(kinds[i]), rows[i], nodes[0], nodes[1])
-    nb = _tabulate_leg(int(kinds[i + 1]), rows[i + 1], nodes[2], nodes[3])
+    na = _tabulate(kinds, rows, i, nodes, 0)
+    nb = _tabulate(kinds, rows, i + 1, nodes, 2)
     _cut_states(kinds, planes, rows, points, length, i, nodes, na, nb, 0.0, 0.0, one, two)
     return na, nb, _turn_between(one, two)
 
@@ -175,8 +176,8 @@ def _cut_states(
     at_a: float, at_b: float, one: Floats, two: Floats,
 ) -> None:  # fmt: skip
     """Writes the states where at_a [mm] is cut off the end of row i and at_b off the start of row i + 1."""
-    row_at(kinds, planes, rows, points, length, i, nodes[:2], na, float(length[i]) - at_a, one)
-    row_at(kinds, planes, rows, points, length, i + 1, nodes[2:], nb, at_b, two)
+    row_at(kinds, planes, rows, points, length, i, nodes, 0, na, float(length[i]) - at_a, one)
+    row_at(kinds, planes, rows, points, length, i + 1, nodes, 2, nb, at_b, two)
 
 
 @kernel
@@ -204,13 +205,13 @@ def common_plane(kinds: Kinds, planes: Wholes, points: Floats, i: int) -> int:
 
 @kernel
 def _reach_along(
-    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, i: int, nodes: Floats, count: int,
-    reach: float, room: float, at_end: bool, out: Floats,
+    kinds: Kinds, planes: Wholes, rows: Floats, points: Floats, length: Floats, i: int, nodes: Floats, table: int,
+    count: int, reach: float, room: float, at_end: bool, out: Floats,
 ) -> float:  # fmt: skip
     """The length [mm] to cut off row i so that the cut is `reach` from its end (or start), at most `room`.
 
-    nodes, count: as in `row_at`;  out: Shape (STATE,), scratch.  A line and a flat arc have it in closed form, the
-    others by bisection.
+    nodes, table, count: as in `row_at`;  out: Shape (STATE,), scratch.  A line and a flat arc have it in closed form,
+    the others by bisection.
     """
     if count == 0:
         return min(reach, room)
@@ -224,7 +225,7 @@ def _reach_along(
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         s = float(length[i]) - middle if at_end else middle
-        row_at(kinds, planes, rows, points, length, i, nodes, count, s, out)
+        row_at(kinds, planes, rows, points, length, i, nodes, table, count, s, out)
         square = 0.0
         for c in range(3):
             square += (out[c] - v[c]) * (out[c] - v[c])
@@ -245,10 +246,10 @@ def cut_corner(
     Returns:  the lengths cut off;  out: the states at the cuts.
     """
     at_a = _reach_along(
-        kinds, planes, rows, points, length, i, nodes[:2], na, reach, float(room[i]), True, one
+        kinds, planes, rows, points, length, i, nodes, 0, na, reach, float(room[i]), True, one
     )  # fmt: skip
     at_b = _reach_along(
-        kinds, planes, rows, points, length, i + 1, nodes[2:], nb, reach, float(room[i + 1]), False, two
+        kinds, planes, rows, points, length, i + 1, nodes, 2, nb, reach, float(room[i + 1]), False, two
     )  # fmt: skip
     _cut_states(kinds, planes, rows, points, length, i, nodes, na, nb, at_a, at_b, one, two)
     return at_a, at_b
@@ -268,11 +269,11 @@ def cut_legs(
     for j in range(len(picked)):
         i = int(picked[j])
         kind = int(kinds[i])
-        count = _tabulate_leg(kind, rows[i], nodes[0], nodes[1])
-        row_at(kinds, planes, rows, points, length, i, nodes, count, float(s0[j]), state)
+        count = _tabulate(kinds, rows, i, nodes, 0)
+        row_at(kinds, planes, rows, points, length, i, nodes, 0, count, float(s0[j]), state)
         for c in range(3):
             out_starts[j, c] = state[c]
-        row_at(kinds, planes, rows, points, length, i, nodes, count, float(s1[j]), state)
+        row_at(kinds, planes, rows, points, length, i, nodes, 0, count, float(s1[j]), state)
         for c in range(3):
             out_ends[j, c] = state[c]
         if count:
