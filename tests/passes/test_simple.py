@@ -316,3 +316,11 @@ def test_move_start_of_a_square() -> None:
     with pytest.raises(UsageError, match="not closed"):
         run(MoveStart(segment=1), Sketch().to(5, 5).path())
     assert hypot(*out.target[-1, :2]) == 0.0
+
+
+def test_another_start_of_a_contour_that_begins_the_path_moves_nothing() -> None:
+    path = Sketch().to(10, 0).to(10, 10).to(0, 10).to(0, 0).path()
+    out, report = run(MoveStart(segment=3), path)
+    assert out.start[:2].tolist() == [10, 10]
+    assert out.target[:, :2].tolist() == [[0, 10], [0, 0], [10, 0], [10, 10]]
+    assert report.deviation == 0.0

@@ -30,7 +30,7 @@ import numpy as np
 from nccompile.errors import UsageError
 from nccompile.geometry.tolerance import COINCIDENT
 from nccompile.passes.base import Context, Pass
-from nccompile.passes.edit import Draft, Links, is_motion
+from nccompile.passes.edit import Links, compose, is_motion
 from nccompile.passes.measure import deviation
 from nccompile.toolpath.columns import Toolpath
 
@@ -61,8 +61,6 @@ class MoveStart(Pass):
         start = path.starts()[first]
         if np.abs(start - path.target[last]).max() > COINCIDENT:
             raise UsageError(f"move-start: the contour of segment {self.segment} is not closed")
-        if first == 0:
-            path = path.replace(start=path.starts()[i])
         out = _rotated(path, first, i, last)
         if context.measure:
             count = last + 1 - first
@@ -73,13 +71,16 @@ class MoveStart(Pass):
 
 
 def _rotated(path: Toolpath, first: int, i: int, last: int) -> Toolpath:
+    """The path whose rows first..last begin with row i; the row before them ends where that begins."""
     if i == first:
         return path
-    draft = Draft(path)
-    for j in range(first):
-        draft.copy(j)
+    origin = np.concatenate([
+        np.arange(first), np.arange(i, last + 1), np.arange(first, i), np.arange(last + 1, len(path))
+    ])  # fmt: skip
+    target = path.target[origin]
     if first > 0:
-        draft.target[first - 1] = path.target[i - 1]
-    for j in [*range(i, last + 1), *range(first, i), *range(last + 1, len(path))]:
-        draft.copy(j)
-    return draft.build()
+        target[first - 1] = path.starts()[i]
+    else:
+        path = path.replace(start=path.starts()[i])
+    links = Links.moved(np.argsort(origin))
+    return compose(path, origin, path.kind[origin], target, path.curve[origin], path.curves, links)
