@@ -13,7 +13,7 @@ from math import cos, sin
 from nccompile import kernels
 from nccompile.decoder import DecodeOptions, decode
 from nccompile.diagnostics import Diagnostics
-from nccompile.passes.pipeline import parse
+from nccompile.passes.option import parse
 from nccompile.source import Source
 
 __all__ = ["main"]

@@ -14,7 +14,7 @@ from benchmarks.inputs import program
 from nccompile.decoder import DecodeOptions, decode
 from nccompile.diagnostics import Diagnostics
 from nccompile.kernels import use
-from nccompile.passes.pipeline import parse
+from nccompile.passes.option import parse
 from nccompile.source import Source
 from nccompile.toolpath import Toolpath
 from tests.velocity.toppra_oracle import compare

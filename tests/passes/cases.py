@@ -23,7 +23,7 @@ from textwrap import dedent
 
 from nccompile.decoder import DecodeOptions, decode
 from nccompile.diagnostics import Diagnostics, Severity
-from nccompile.passes.pipeline import parse
+from nccompile.passes.option import parse
 from nccompile.source import Source
 from nccompile.toolpath.columns import Toolpath
 from nccompile.toolpath.text import format_toolpath, parse_toolpath

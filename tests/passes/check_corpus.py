@@ -16,7 +16,7 @@ from nccompile.diagnostics import Severity
 from nccompile.errors import UsageError
 from nccompile.machine.model import default_machine
 from nccompile.passes.base import Report
-from nccompile.passes.pipeline import parse
+from nccompile.passes.option import parse
 from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options
 from tests.corpus import programs

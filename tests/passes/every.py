@@ -10,7 +10,7 @@ import numpy as np
 
 from nccompile.geometry.frames import rotation
 from nccompile.passes.base import Pass
-from nccompile.passes.pipeline import parse
+from nccompile.passes.option import parse
 from nccompile.toolpath.columns import Floats, Kind, Toolpath
 from tests.passes.paths import Probe
 

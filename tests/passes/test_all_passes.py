@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from nccompile import kernels
 from nccompile.errors import UsageError
 from nccompile.passes.base import Report
-from nccompile.passes.pipeline import REGISTRY
+from nccompile.passes.option import REGISTRY
 from nccompile.passes.reverse import reversed_path
 from nccompile.toolpath.columns import Floats, Kind, Toolpath
 from tests.passes.every import EVERY, Turned, dense

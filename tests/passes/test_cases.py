@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from nccompile.passes.pipeline import ORDER
+from nccompile.passes.option import ORDER
 from tests.passes.cases import Case, agree, examples_in, run_case
 
 HERE = Path(__file__).parent

@@ -8,7 +8,7 @@ import pytest
 
 from nccompile.errors import UsageError
 from nccompile.passes.flatten import Flatten
-from nccompile.passes.pipeline import ORDER, parse
+from nccompile.passes.option import ORDER, parse
 from nccompile.passes.transform import Transform
 from nccompile.toolpath.columns import Toolpath
 from tests.passes.paths import Sketch

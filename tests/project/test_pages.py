@@ -5,7 +5,7 @@ import pytest
 from nccompile.codes import correction
 from nccompile.codes.page import Page
 from nccompile.machine.model import default_machine
-from nccompile.passes.pipeline import parse
+from nccompile.passes.option import parse
 from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options
 

@@ -180,14 +180,19 @@ class ProgramOptions(ReadOptions):
 
     def resolve(self, machine: Machine) -> Options:
         """The options of a compilation; raises UsageError."""
-        from nccompile.passes.pipeline import parse
+        from nccompile.passes.pipeline import Pipeline
         from nccompile.passes.velocity import LOOK_AHEAD, WINDOW
         from nccompile.toolchain import Options
 
+        passes = Pipeline()
+        if self.passes:
+            from nccompile.passes.option import parse
+
+            passes = parse(self.passes)
         return Options(
             machine, self.decoding(machine), self.angle_tolerance, self.time_law, self.verify,
             self.planner or LOOK_AHEAD, WINDOW if self.window is None else self.window or None,
-            self.junction_deviation, passes=parse(self.passes or ""),
+            self.junction_deviation, passes=passes,
         )  # fmt: skip
 
 
