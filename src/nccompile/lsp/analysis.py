@@ -18,7 +18,7 @@ from nccompile.lint.program import Program
 from nccompile.machine.model import Machine
 from nccompile.parser import ReadSource
 from nccompile.passes.velocity import row_times
-from nccompile.toolchain import Compilation, Options
+from nccompile.toolchain import Compilation, Given, Options
 from nccompile.toolpath import Toolpath
 from nccompile.toolpath.columns import Floats, Ints
 
@@ -108,9 +108,11 @@ def analyse(source: ReadSource, version: int, settings: Settings, wanted: Callab
 
 def timed(analysis: Analysis, wanted: Callable[[], bool]) -> Times | None:
     """The times of a checked program; None if it has errors or cannot be planned.  Raises Cancelled."""
-    if not analysis.is_sound or not analysis.program.chunks:
+    program = analysis.program
+    if not analysis.is_sound or not program.chunks:
         return None
-    compilation = Compilation(analysis.program.source, analysis.settings.options, wanted)
+    path = Given(program.chunks[0].axes, lambda: iter(program.chunks))
+    compilation = Compilation(program.source, analysis.settings.options, wanted, path)
     seconds, lines = [], []
     velocity = 0.0
     try:
