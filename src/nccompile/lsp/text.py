@@ -92,8 +92,8 @@ class Text:
             (first, at), (last, until) = (last, until), (first, at)
         low = max(0, first - 1)
         old = self.lines[low : last + 1]
-        joined = self.lines[first][:at] + new + self.lines[last][until:]
-        lines, ends = split(joined)
+        new_text = self.lines[first][:at] + new + self.lines[last][until:]
+        lines, ends = split(new_text)
         rest = len(self.lines) - last - 1
         self.lines[first : last + 1] = lines
         self.ends[first:last] = ends
