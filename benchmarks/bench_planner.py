@@ -22,14 +22,8 @@ from nccompile.kernels import use
 from nccompile.kernels.corners import CIRCLE
 from nccompile.machine.limits import AxisLimits
 from nccompile.machine.model import load
-from nccompile.passes.velocity import (
-    JERK,
-    LOOK_AHEAD,
-    TIME_OPTIMAL,
-    PlanSettings,
-    plan,
-    row_times,
-)
+from nccompile.passes.velocity import JERK, LOOK_AHEAD, TIME_OPTIMAL, PlanSettings
+from nccompile.passes.velocity.planner import plan, row_times
 from nccompile.source import Source
 from nccompile.toolpath import Toolpath
 from tests.velocity.peers import Moves, finishing, grbl, klipper, least, linuxcnc

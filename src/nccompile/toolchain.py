@@ -14,6 +14,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
+from typing import TYPE_CHECKING
 
 from nccompile.backend import ncq
 from nccompile.decoder import Decoded, DecodeOptions, decode
@@ -22,21 +23,14 @@ from nccompile.machine.limits import check_axes, check_travel
 from nccompile.machine.model import Machine
 from nccompile.passes.check_marks import check_marks
 from nccompile.passes.pipeline import Pipeline
-from nccompile.passes.velocity import (
-    LOOK_AHEAD,
-    SOFTMOTION,
-    TIME_OPTIMAL,
-    WINDOW,
-    PlanSettings,
-    plan,
-    row_times,
-)
-from nccompile.passes.velocity.excess import check_excess
-from nccompile.passes.velocity.losses import Losses
+from nccompile.passes.velocity import LOOK_AHEAD, SOFTMOTION, TIME_OPTIMAL, WINDOW, PlanSettings
 from nccompile.source import LargeSource, Source
 from nccompile.threads import ahead
 from nccompile.toolpath import Toolpath
 from nccompile.toolpath.verify import verify_chain
+
+if TYPE_CHECKING:
+    from nccompile.passes.velocity.losses import Losses
 
 __all__ = ["Compilation", "Given", "JobTime", "Options", "machine_digest"]
 
@@ -90,6 +84,8 @@ class JobTime:
 
     def along(self, chunks: Iterable[Toolpath]) -> Iterator[Toolpath]:
         """Hands chunks on and counts their time at override 1; M functions count as acknowledged at once."""
+        from nccompile.passes.velocity.planner import row_times  # noqa: PLC0415 - as in `planned`
+
         for chunk in chunks:
             if len(chunk):
                 if self.losses is not None:
@@ -144,6 +140,11 @@ class Compilation:
 
     def planned(self) -> Iterator[Toolpath]:
         """The toolpath with its velocities; pulling it counts its time."""
+        # The linter plans nothing and starts without the planner.
+        from nccompile.passes.velocity.excess import check_excess  # noqa: PLC0415
+        from nccompile.passes.velocity.losses import Losses  # noqa: PLC0415
+        from nccompile.passes.velocity.planner import plan  # noqa: PLC0415
+
         program = self._program()
         settings = PlanSettings.from_machine(
             self.options.machine,

@@ -14,7 +14,8 @@ from nccompile import kernels
 from nccompile.backend.samples import SampleBlock, sample
 from nccompile.kernels.interpolator import NEED_DATA
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import PlanSettings, plan, row_times
+from nccompile.passes.velocity import PlanSettings
+from nccompile.passes.velocity.planner import plan, row_times
 from nccompile.runtime.interpolator import Interpolator, Status
 from nccompile.runtime.ring import RingBuffer
 from nccompile.toolpath.columns import Floats, Kind, Toolpath

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from nccompile.backend.samples import sample
 from nccompile.kernels.interpolator import JUMPED
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import JERK, LOOK_AHEAD, TIME_OPTIMAL, PlanSettings, plan
+from nccompile.passes.velocity import JERK, LOOK_AHEAD, TIME_OPTIMAL, PlanSettings
+from nccompile.passes.velocity.planner import plan
 from nccompile.runtime.backwards import backward
 from nccompile.runtime.interpolator import Status
 from nccompile.runtime.interpolator2dir import Direction, Interpolator2Dir

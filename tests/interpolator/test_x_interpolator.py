@@ -9,7 +9,8 @@ import pytest
 
 from nccompile.errors import UsageError
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import PlanSettings, plan
+from nccompile.passes.velocity import PlanSettings
+from nccompile.passes.velocity.planner import plan
 from nccompile.runtime.x_interpolator import XInterpolator
 from nccompile.toolpath.columns import Toolpath
 from tests.velocity.random_paths import Builder

@@ -20,7 +20,8 @@ from nccompile.passes.move_start import MoveStart
 from nccompile.passes.reverse import Reverse
 from nccompile.passes.split import Split
 from nccompile.passes.transform import Transform
-from nccompile.passes.velocity import PLANNERS, plan
+from nccompile.passes.velocity import PLANNERS
+from nccompile.passes.velocity.planner import plan
 from nccompile.passes.velocity.settings import PlanSettings
 from nccompile.toolpath.columns import Kind, Mark, Plane, Toolpath
 from tests.passes.every import dense

@@ -19,7 +19,8 @@ from nccompile.decoder import DecodeOptions, decode
 from nccompile.diagnostics import Diagnostics
 from nccompile.kernels import use
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import PLANNERS, PlanSettings, plan, row_times
+from nccompile.passes.velocity import PLANNERS, PlanSettings
+from nccompile.passes.velocity.planner import plan, row_times
 from nccompile.source import Source
 from nccompile.toolpath.columns import Toolpath
 from tests.corpus import programs

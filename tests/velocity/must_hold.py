@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from nccompile.backend.samples import SampleBlock, sample
-from nccompile.passes.velocity import SOFTMOTION, PlanSettings, plan, row_times
+from nccompile.passes.velocity import SOFTMOTION, PlanSettings
+from nccompile.passes.velocity.planner import plan, row_times
 from nccompile.toolpath.columns import Floats, Kind, Toolpath
 from nccompile.toolpath.verify import verify_chain
 

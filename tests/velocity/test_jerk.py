@@ -15,7 +15,8 @@ from scipy.optimize import linprog
 
 from nccompile.backend.samples import SampleBlock, sample
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import JERK, LOOK_AHEAD, PlanSettings, jerk, plan, row_times
+from nccompile.passes.velocity import JERK, LOOK_AHEAD, PlanSettings, jerk
+from nccompile.passes.velocity.planner import plan, row_times
 from nccompile.toolpath.columns import Floats, Ints, Kind, Toolpath
 from nccompile.toolpath.verify import verify
 from tests.velocity.random_paths import Builder, cut, paths

@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import PlanSettings, plan, row_times
+from nccompile.passes.velocity import PlanSettings
 from nccompile.passes.velocity.losses import Losses
+from nccompile.passes.velocity.planner import plan, row_times
 from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options
 from nccompile.toolpath.columns import Kind, Toolpath

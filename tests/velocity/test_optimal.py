@@ -16,7 +16,8 @@ from toppra import algorithm, constraint
 from nccompile.backend.samples import SampleBlock, sample
 from nccompile.machine.limits import AxisLimits
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import LOOK_AHEAD, PLANNERS, TIME_OPTIMAL, PlanSettings, plan, row_times
+from nccompile.passes.velocity import LOOK_AHEAD, PLANNERS, TIME_OPTIMAL, PlanSettings
+from nccompile.passes.velocity.planner import plan, row_times
 from nccompile.runtime.task import CyclicTask
 from nccompile.source import Source
 from nccompile.toolchain import Compilation, Options

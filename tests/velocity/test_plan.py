@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from nccompile import kernels
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import Planner, PlanSettings, plan, row_times
+from nccompile.passes.velocity import PlanSettings
+from nccompile.passes.velocity.planner import Planner, plan, row_times
 from nccompile.toolpath.columns import Kind, Toolpath
 from tests.velocity.random_paths import Builder, cut, paths
 

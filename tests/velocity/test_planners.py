@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from nccompile.kernels.corners import CIRCLE
 from nccompile.machine.limits import AxisLimits
 from nccompile.machine.model import default_machine
-from nccompile.passes.velocity import SOFTMOTION, Planner, PlanSettings, plan, row_times
+from nccompile.passes.velocity import SOFTMOTION, PlanSettings
+from nccompile.passes.velocity.planner import Planner, plan, row_times
 from nccompile.toolpath.columns import Toolpath
 from tests.velocity.peers import Moves, finishing, grbl, klipper, least, linuxcnc
 from tests.velocity.random_paths import Builder, cut, paths

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nccompile.machine.model import default_machine, parse
-from nccompile.passes.velocity import LOOK_AHEAD, TIME_OPTIMAL, PlanSettings, plan
+from nccompile.passes.velocity import LOOK_AHEAD, TIME_OPTIMAL, PlanSettings
+from nccompile.passes.velocity.planner import plan
 from nccompile.toolpath.columns import Floats, Toolpath
 from tests.velocity.random_paths import Builder, paths
 

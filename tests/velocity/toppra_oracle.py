@@ -17,7 +17,8 @@ from toppra import algorithm
 from toppra.constraint import LinearConstraint
 
 from nccompile.machine.limits import AxisLimits
-from nccompile.passes.velocity import TIME_OPTIMAL, PlanSettings, plan, row_times
+from nccompile.passes.velocity import TIME_OPTIMAL, PlanSettings
+from nccompile.passes.velocity.planner import plan, row_times
 from nccompile.toolpath.columns import Floats, Kind, Plane, Toolpath
 
 __all__ = ["ACCEL", "BEND", "Comparison", "compare", "equal_limits"]

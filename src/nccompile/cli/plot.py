@@ -33,7 +33,7 @@ def plot(
     from nccompile.cli.outputs import keep_apart, output_of, require_picture
     from nccompile.kernels import expect_work
     from nccompile.machine.limits import limits
-    from nccompile.passes.velocity import row_times
+    from nccompile.passes.velocity.planner import row_times
     from nccompile.passes.velocity.settings import LAWS
     from nccompile.toolchain import Compilation
     from nccompile.view.motion import caps, gather

@@ -17,7 +17,7 @@ from nccompile.lint.engine import Report, lint
 from nccompile.lint.program import Program
 from nccompile.machine.model import Machine
 from nccompile.parser import ReadSource
-from nccompile.passes.velocity import row_times
+from nccompile.passes.velocity.planner import row_times
 from nccompile.toolchain import Compilation, Given, Options
 from nccompile.toolpath import Toolpath
 from nccompile.toolpath.columns import Floats, Ints

@@ -1,10 +1,9 @@
 """Velocity planning: limits, junctions and look-ahead; the last pass before the queue.
 
 settings    what the planner needs to know of machine, program defaults and options
-planner     the pass itself: a window over the chunks
+planner     the pass itself: a window over the chunks; whoever plans nothing does not load it
 """
 
-from nccompile.passes.velocity.planner import Planner, plan, row_times
 from nccompile.passes.velocity.settings import (
     JERK,
     LAWS,
@@ -18,5 +17,4 @@ from nccompile.passes.velocity.settings import (
 
 __all__ = [
     "JERK", "LAWS", "LOOK_AHEAD", "PLANNERS", "SOFTMOTION", "TIME_OPTIMAL", "WINDOW", "PlanSettings",
-    "Planner", "plan", "row_times",
 ]  # fmt: skip
