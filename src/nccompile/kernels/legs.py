@@ -31,7 +31,7 @@ from nccompile.kernels.planes import SPACE, embed
 
 __all__ = [
     "CORNER", "LEFT", "SHARPEST", "SHORTEST", "STATE", "common_plane", "corner_states", "cut_corner",
-    "cut_legs", "row_at",
+    "cut_legs", "row_at", "tabulate_row",
 ]  # fmt: skip
 
 STATE = 9
@@ -59,7 +59,7 @@ def _is_straight(kind: int) -> bool:
 
 
 @kernel
-def _tabulate(kinds: Kinds, rows: Floats, i: int, nodes: Floats, table: int) -> int:
+def tabulate_row(kinds: Kinds, rows: Floats, i: int, nodes: Floats, table: int) -> int:
     """Fills nodes[table], nodes[table + 1], the arc-length table of row i; returns its rows, 0 for a line: none."""
     if _is_straight(int(kinds[i])):
         return 0
@@ -164,8 +164,8 @@ def corner_states(
     Args:     nodes: Shape (4, NODES), out: the tables of row i and of row i + 1.
     Returns:  rows of both tables, and the bend 0..pi [rad].
     """
-    na = _tabulate(kinds, rows, i, nodes, 0)
-    nb = _tabulate(kinds, rows, i + 1, nodes, 2)
+    na = tabulate_row(kinds, rows, i, nodes, 0)
+    nb = tabulate_row(kinds, rows, i + 1, nodes, 2)
     _cut_states(kinds, planes, rows, points, length, i, nodes, na, nb, 0.0, 0.0, one, two)
     return na, nb, _turn_between(one, two)
 
@@ -269,7 +269,7 @@ def cut_legs(
     for j in range(len(picked)):
         i = int(picked[j])
         kind = int(kinds[i])
-        count = _tabulate(kinds, rows, i, nodes, 0)
+        count = tabulate_row(kinds, rows, i, nodes, 0)
         row_at(kinds, planes, rows, points, length, i, nodes, 0, count, float(s0[j]), state)
         for c in range(3):
             out_starts[j, c] = state[c]

@@ -9,8 +9,8 @@ Start marks go to the first new row of their segment, stop marks to the last one
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -33,17 +33,17 @@ from nccompile.toolpath.lengths import path_lengths
 __all__ = [
     "STARTS",
     "STOPS",
-    "Draft",
     "Geometry",
-    "Link",
     "Links",
+    "Pieces",
     "Rows",
-    "Shape",
     "compose",
+    "cut_curves",
     "geometry",
     "is_motion",
     "linked",
     "place",
+    "put_pieces",
 ]
 
 STARTS = int(Mark.TOOL_LEFT | Mark.TOOL_RIGHT | Mark.SMOOTH | Mark.ROUND | Mark.LOOP)
@@ -52,9 +52,10 @@ STARTS = int(Mark.TOOL_LEFT | Mark.TOOL_RIGHT | Mark.SMOOTH | Mark.ROUND | Mark.
 STOPS = int(Mark.TOOL_STOP | Mark.CORNER_STOP | Mark.LOOP_STOP)
 """Marks that act at the end of their segment."""
 
-Link: TypeAlias = tuple[int, float, float, int, float, float]
-Shape: TypeAlias = tuple[int, Sequence[float]]
 Rows: TypeAlias = npt.NDArray[np.intp]
+
+_ROOM = 16
+"""Pieces of a curve that there is room for at first."""
 
 
 class Geometry(NamedTuple):
@@ -98,15 +99,6 @@ class Links:
         n = len(origin)
         zero, one = np.zeros(n), np.ones(n)
         return cls(origin, zero, one, np.arange(n), zero, one)
-
-    @classmethod
-    def from_rows(cls, rows: Sequence[Link]) -> Links:
-        """Links from tuples in any order."""
-        table = np.array(sorted(rows, key=lambda link: (link[0], link[1], link[3])), np.float64).reshape(
-            -1, 6
-        )
-        i, p0, p1, r, q0, q1 = table.T
-        return cls(i.astype(np.intp), p0.copy(), p1.copy(), r.astype(np.intp), q0.copy(), q1.copy())
 
     @classmethod
     def moved(cls, row: Rows) -> Links:
@@ -154,14 +146,13 @@ def place(links: Links, segment: int, position: float) -> tuple[int, float]:
 
 def compose(
     source: Toolpath, origin: Rows, kind: Bytes, target: Floats, shape: Ints, curves: Curves, links: Links,
-    feed: Floats | None = None, clear: int = 0, known: Floats | None = None,
+    clear: int = 0, known: Floats | None = None,
 ) -> Toolpath:  # fmt: skip
     """A chunk of new rows that starts where `source` starts.
 
     Args:     origin: Shape (n,), source row whose feed, accelerations, D, S-profile and line each row takes;
               kind, target: as in Toolpath;  shape: Shape (n,), row in `curves` or -1;  links: for events;
-              feed: Shape (n,) [mm/s], None: that of the origin;  clear: marks that have been carried out;
-              known: lengths of curves (`path_lengths`).
+              clear: marks that have been carried out;  known: lengths of curves (`path_lengths`).
     """
     n = len(origin)
     curved = np.flatnonzero(shape >= 0)
@@ -175,7 +166,7 @@ def compose(
         target=target,
         curve=curve,
         length=np.zeros(n),
-        feed=source.feed[origin] if feed is None else feed,
+        feed=source.feed[origin],
         accel=source.accel[origin],
         decel=source.decel[origin],
         mark=_marks(source, origin, clear),
@@ -261,62 +252,61 @@ def linked(path: Toolpath, rows: Rows, parts: Floats) -> tuple[Links, Rows]:
     return Links(row, p0, p1, piece, q0, q1), row[firsts]
 
 
-@dataclass
-class Draft:
-    """Rows written one by one, for passes that decide segment by segment."""
+class Pieces(NamedTuple):
+    """What some source rows become, in order.
 
-    source: Toolpath
-    clear: int = 0
-    kind: list[int] = field(default_factory=list)
-    target: list[Floats] = field(default_factory=list)
-    shape: list[Shape | None] = field(default_factory=list)
-    origin: list[int] = field(default_factory=list)
-    links: list[Link] = field(default_factory=list)
-    feed: dict[int, float] = field(default_factory=dict)
+    owner, share: Shape (m,), the source row, ascending, and at which part 0..1 of its way each piece ends, the last
+    one of a row at 1;  kind: Shape (m,);  target: Shape (m, k);  curves: m rows, those of straight pieces unused.
+    """
 
-    def __len__(self) -> int:
-        return len(self.kind)
+    owner: Rows
+    share: Floats
+    kind: Bytes
+    target: Floats
+    curves: Curves
 
-    def copy(self, i: int) -> None:
-        """The source row i as it is."""
-        s = self.source
-        row = int(s.curve[i])
-        shape = None if row < 0 else (int(s.curves.plane[row]), s.curves.parameters[row].tolist())
-        self.add(int(s.kind[i]), s.target[i], shape, i)
 
-    def add(
-        self, kind: int, target: Floats, shape: Shape | None, origin: int, p0: float = 0.0, p1: float = 1.0
-    ) -> None:
-        """A new row that stands for the part p0..p1 of the source row `origin`."""
-        self.links.append((origin, p0, p1, len(self.kind), 0.0, 1.0))
-        self.insert(kind, target, shape, origin)
+def cut_curves(
+    picked: Rows, most: int, widths: Sequence[int], fill: Callable[..., int]
+) -> tuple[Rows, Floats, list[Floats]]:
+    """What a kernel makes of curves, as many at a time as there is room for.
 
-    def insert(self, kind: int, target: Floats, shape: Shape | None, origin: int) -> None:
-        """A new row with the columns of `origin`; its links are the caller's."""
-        self.kind.append(kind)
-        self.target.append(target)
-        self.shape.append(shape)
-        self.origin.append(origin)
+    Args:     picked: Shape (p,), ascending, rows of the curves;  most: pieces of one curve;  widths: of the further
+              columns;  fill: called with the place in `picked` from which to go on, and the columns owner, share and
+              further ones, of one length each; it returns the number of pieces it filled.
+    Returns:  owner and share of `Pieces`, and the further columns, Shape (m, width).
+    """
+    room = most + _ROOM * len(picked)
+    parts, begin = [], 0
+    while begin < len(picked):
+        columns = [np.empty(room, np.int64), np.empty(room), *(np.empty((room, width)) for width in widths)]
+        count = fill(begin, *columns)
+        parts.append([column[:count] for column in columns])
+        begin = int(np.searchsorted(picked, columns[0][count - 1])) + 1
+    owner, share, *further = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return owner, share, further
 
-    def link(self, segment: int, p0: float, p1: float, row: int, q0: float = 0.0, q1: float = 1.0) -> None:
-        """Says that p0..p1 of a source row became q0..q1 of a new row."""
-        self.links.append((segment, p0, p1, row, q0, q1))
 
-    def build(self) -> Toolpath:
-        """The new rows as a chunk."""
-        n, k = len(self.kind), len(self.source.axes)
-        shapes = [s for s in self.shape if s is not None]
-        at = np.full(n, -1, np.int32)
-        at[[r for r, s in enumerate(self.shape) if s is not None]] = np.arange(len(shapes), dtype=np.int32)
-        origin = np.array(self.origin, np.intp)
-        feed = self.source.feed[origin].copy() if n else np.zeros(0)
-        for row, value in self.feed.items():
-            feed[row] = value
-        return compose(
-            self.source, origin, np.array(self.kind, np.uint8),
-            np.array(self.target, np.float64).reshape(n, k), at, Curves.from_rows(shapes),
-            Links.from_rows(self.links), feed, self.clear,
-        )  # fmt: skip
+def put_pieces(path: Toolpath, pieces: Pieces) -> tuple[Toolpath, Links]:
+    """The path with pieces for their rows, the others as they are; and what became of what."""
+    n, m = len(path), len(pieces.owner)
+    number = np.bincount(pieces.owner, minlength=n)
+    origin = np.repeat(np.arange(n), np.maximum(number, 1))
+    at = np.flatnonzero(number[origin])
+    kind, target, shape = path.kind[origin], path.target[origin], path.curve[origin]
+    kind[at], target[at] = pieces.kind, pieces.target
+    shape[at] = np.where(pieces.kind >= Kind.ARC, len(path.curves) + np.arange(m), -1)
+    curves = Curves(
+        np.concatenate([path.curves.plane, pieces.curves.plane]),
+        np.vstack([path.curves.parameters, pieces.curves.parameters]),
+    )
+    p0, p1 = np.zeros(len(origin)), np.ones(len(origin))
+    p1[at] = pieces.share
+    p0[at] = np.where(
+        np.diff(pieces.owner, prepend=-1) == 0, np.concatenate([[0.0], pieces.share[:-1]])[:m], 0.0
+    )
+    links = Links(origin, p0, p1, np.arange(len(origin)), np.zeros(len(origin)), np.ones(len(origin)))
+    return compose(path, origin, kind, target, shape, curves, links), links
 
 
 def is_motion(kind: int) -> bool:

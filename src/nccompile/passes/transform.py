@@ -34,13 +34,22 @@ import numpy as np
 
 from nccompile.errors import UsageError
 from nccompile.geometry.frames import Frame, mapped_conics, rotation
-from nccompile.geometry.parts import Way, tangent_at
-from nccompile.geometry.spatial import cubics
-from nccompile.kernels.distance import place_on
+from nccompile.kernels import expect_work
+from nccompile.kernels.space_cubics import MOST, space_cubics
 from nccompile.passes.base import Context, Flags, Pass, bounded, gather
-from nccompile.passes.edit import Draft, Links
+from nccompile.passes.edit import Links, Pieces, Rows, cut_curves, geometry, put_pieces
 from nccompile.passes.measure import deviation
-from nccompile.toolpath.columns import Bytes, Curves, Floats, Kind, Mark, Plane, Toolpath, Words
+from nccompile.toolpath.columns import (
+    CURVE_PARAMETERS,
+    Bytes,
+    Curves,
+    Floats,
+    Kind,
+    Mark,
+    Plane,
+    Toolpath,
+    Words,
+)
 from nccompile.toolpath.lengths import PLANE_AXES, THIRD_AXIS, path_lengths
 from nccompile.units import rad_from_deg
 
@@ -48,6 +57,9 @@ __all__ = ["Transform", "swap_sides"]
 
 _PLANE_OF_NORMAL = {2: Plane.XY, 1: Plane.ZX, 0: Plane.YZ}
 _SIDES = int(Mark.TOOL_LEFT | Mark.TOOL_RIGHT)
+
+_WORK = 50
+"""What a curve that becomes cubics costs, in the rows by which other passes count."""
 
 _LEAST, _GREATEST = 1e-6, 1e6
 """Factors by which a frame may change lengths."""
@@ -126,16 +138,7 @@ class Transform(Pass):
         lost = np.flatnonzero(self._lost(path))
         if not len(lost):
             return path, Links.copies(np.arange(len(path)))
-        draft = Draft(path)
-        starts, tolerance = path.starts(), self.tolerance / self.frame.stretch[1]
-        into = np.zeros(len(path), np.bool_)
-        into[lost] = True
-        for i in range(len(path)):
-            if into[i]:
-                in_space(draft, i, starts[i], tolerance)
-            else:
-                draft.copy(i)
-        return draft.build(), Links.from_rows(draft.links)
+        return put_pieces(path, in_space(path, lost, self.tolerance / self.frame.stretch[1]))
 
     def _lost(self, path: Toolpath) -> Flags:
         """Shape (n,): which plane curves come to lie in none, or are helices whose plane is stretched unevenly."""
@@ -249,24 +252,17 @@ def swap_sides(mark: Words) -> Words:
     return swapped.astype(np.uint16)
 
 
-def in_space(draft: Draft, i: int, start: Floats, tolerance: float) -> None:
-    """Adds the plane curve of row i as cubics in space within `tolerance` [mm]."""
-    s = draft.source
-    row = int(s.curve[i])
-    plane, p, kind, end = int(s.curves.plane[row]), s.curves.parameters[row], int(s.kind[i]), s.target[i]
-    way = Way(kind, p.tolist())
-    rise = (end[THIRD_AXIS[plane]] - start[THIRD_AXIS[plane]]) / way.length if way.length > 0.0 else 0.0
+def in_space(path: Toolpath, picked: Rows, tolerance: float) -> Pieces:
+    """The plane curves of rows as cubics in space within `tolerance` [mm]; picked: Shape (p,), ascending."""
+    shape = geometry(path)
 
-    def at(share: float) -> tuple[Floats, Floats]:
-        u = way.parameter(share)
-        return (
-            np.array(place_on(kind, plane, p, start, end, u)),
-            np.array(tangent_at(kind, plane, p, u, float(rise))),
-        )
+    def fill(begin: int, owner: Rows, share: Floats, ends: Floats, rows: Floats) -> int:
+        return space_cubics(*shape, path.length, picked, begin, tolerance, owner, share, ends, rows)
 
-    before = 0.0
-    for share, c in cubics(at, float(s.length[i]), tolerance):
-        target = start + share * (end - start)
-        target[:3] = at(share)[0] if share < 1.0 else end[:3]
-        draft.add(Kind.POLYNOMIAL, target, (int(Plane.SPACE), c.ravel().tolist()), i, before, share)
-        before = share
+    expect_work(_WORK * len(picked))
+    owner, share, (ends, rows) = cut_curves(picked, MOST, (3, CURVE_PARAMETERS), fill)
+    begin, end = path.starts()[owner], path.target[owner]
+    target = np.where(share[:, None] < 1.0, begin + share[:, None] * (end - begin), end)
+    target[:, :3] = ends
+    kind, planes = np.full(len(owner), Kind.POLYNOMIAL, np.uint8), np.full(len(owner), Plane.SPACE, np.uint8)
+    return Pieces(owner, share, kind, target, Curves(planes, rows))
