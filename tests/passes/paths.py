@@ -9,13 +9,13 @@ from math import cos, sin
 import numpy as np
 from hypothesis import strategies as st
 
-from nccompile.geometry.parts import Way, curvature_at, tangent_at
 from nccompile.kernels import curves as kernels
 from nccompile.kernels.distance import place_on
 from nccompile.passes.base import Context, Pass, Report, gather
 from nccompile.toolpath.columns import Curves, EventKind, Events, Floats, Kind, Mark, Plane, Toolpath
 from nccompile.toolpath.lengths import THIRD_AXIS, path_lengths
 from nccompile.toolpath.verify import verify_chain
+from tests.passes.places import Way, curvature_at, tangent_at
 
 AXES = ("X", "Y", "Z", "A")
 

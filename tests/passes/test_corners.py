@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nccompile.geometry.parts import curvature_at
 from nccompile.kernels.curves import curvature
 from nccompile.passes.base import Pass
 from nccompile.passes.round_corners import RoundCorners
 from nccompile.passes.smooth_corners import SmoothCorners
 from nccompile.toolpath.columns import Kind, Mark, Plane, Toolpath
 from tests.passes.paths import Probe, Sketch, paths, run, same
+from tests.passes.places import curvature_at
 
 
 @pytest.mark.parametrize(

@@ -33,7 +33,7 @@ from nccompile.kernels.curves import (
 )
 from nccompile.kernels.planes import SPACE, plane_axes
 
-__all__ = ["PARTS", "curve_parts", "curve_piece", "cut_curves", "way_share"]
+__all__ = ["PARTS", "curve_parts", "curve_piece", "cut_curves", "turn_round", "way_share"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -67,6 +67,13 @@ def curve_piece(kind: int, p: Floats, u0: float, u1: float, out: Floats) -> None
             out[c + 1] = h * (p[c + 1] + u0 * (2.0 * p[c + 2] + u0 * 3.0 * p[c + 3]))
             out[c + 2] = h * h * (p[c + 2] + 3.0 * p[c + 3] * u0)
             out[c + 3] = h * h * h * p[c + 3]
+
+
+@kernel
+def turn_round(kinds: Kinds, rows: Floats) -> None:
+    """Curves, kinds (m,) and rows (m, 12), run from their ends to their starts; in place."""
+    for i in range(len(kinds)):
+        curve_piece(int(kinds[i]), rows[i], 1.0, 0.0, rows[i])
 
 
 @kernel

@@ -28,7 +28,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from nccompile.geometry.parts import reverse
+from nccompile.kernels.curve_parts import turn_round
 from nccompile.passes.base import Context, Pass
 from nccompile.passes.edit import Links
 from nccompile.passes.measure import deviation
@@ -71,12 +71,8 @@ def reversed_path(path: Toolpath) -> Toolpath:
     rows = path.curve[back][curved]
     curve = np.full(n, -1, np.int32)
     curve[curved] = np.arange(len(curved), dtype=np.int32)
-    p = np.array(
-        [
-            reverse(int(kind), path.curves.parameters[row].tolist())
-            for kind, row in zip(kinds[curved], rows, strict=True)
-        ]
-    ).reshape(-1, 12)
+    parameters = path.curves.parameters[rows]
+    turn_round(kinds[curved], parameters)
     e = path.events
     moved = [
         (n - 1 - int(e.segment[j]), int(e.kind[j]), int(e.number[j]),
@@ -87,7 +83,7 @@ def reversed_path(path: Toolpath) -> Toolpath:
     picked = {name: getattr(path, name)[back] for name in _COLUMNS}
     turned = path.replace(
         start=path.end, kind=kinds, target=path.starts()[back], curve=curve, mark=_marks(path)[back],
-        curves=Curves(path.curves.plane[rows], p.reshape(-1, 12)), events=Events.from_rows(moved), **picked,
+        curves=Curves(path.curves.plane[rows], parameters), events=Events.from_rows(moved), **picked,
     )  # fmt: skip
     return turned.replace(length=path_lengths(turned))
 

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from nccompile.geometry.parts import reverse
+from nccompile.kernels.curve_parts import turn_round
 from nccompile.kernels.interpolator import CONTINUES
-from nccompile.toolpath.columns import CURVE_PARAMETERS, Curves, EventKind, Events, Floats, Kind, Toolpath
+from nccompile.toolpath.columns import Curves, EventKind, Events, Floats, Kind, Toolpath
 
 __all__ = ["backward"]
 
@@ -30,9 +30,8 @@ def backward(path: Toolpath) -> Toolpath:
     curve = np.full(n, -1, np.int32)
     curve[curved] = np.arange(len(curved), dtype=np.int32)
     kind = path.kind[back].copy()
-    parameters = np.zeros((len(curved), CURVE_PARAMETERS))
-    for at, row in enumerate(curved.tolist()):
-        parameters[at] = reverse(int(kind[row]), path.curves.parameters[old[row]].tolist())
+    parameters = path.curves.parameters[old[curved]]
+    turn_round(kind[curved], parameters)
     kind[kind == Kind.M_FUNCTION] = Kind.DWELL
     mark = np.uint16(1 << CONTINUES)
     inner = np.concatenate([[0], path.profile[:-1] & mark])[:n].astype(np.uint16)

@@ -1,10 +1,4 @@
-"""Parts of segments: cutting curves, turning them round, their points, directions and curvature in space.
-
-    kind, plane, row      as in the curve table; a straight segment has no row (None)
-    u0 .. u1              the curve parameter of the part, 0..1
-
-All functions take one segment and plain floats; passes that work on many lines at once use columns instead.
-"""
+"""Points, directions and curvature along one curve, from plain formulas: what the tests of passes measure by."""
 
 from __future__ import annotations
 
@@ -15,46 +9,16 @@ import numpy as np
 
 from nccompile.geometry.curve import ROW, Floats
 from nccompile.kernels import curves as kernels
-from nccompile.kernels.curves import ARC, ELLIPSE, NODES
+from nccompile.kernels.curves import NODES
 
-__all__ = ["Way", "curvature_at", "cut", "embed", "reparameter", "reverse", "tangent_at"]
+__all__ = ["Way", "curvature_at", "tangent_at"]
 
 Vector: TypeAlias = tuple[float, float, float]
 
 SPACE = 3
 
 
-def cut(kind: int, row: Sequence[float], u0: float, u1: float) -> list[float]:
-    """The curve row of the part u0..u1 of a curve."""
-    p = [float(v) for v in row] + [0.0] * (ROW - len(row))
-    if kind == ARC:
-        p[3], p[4] = p[3] + p[4] * u0, p[4] * (u1 - u0)
-    elif kind == ELLIPSE:
-        p[5], p[6] = p[5] + p[6] * u0, p[6] * (u1 - u0)
-    else:
-        for c in range(3):
-            p[4 * c : 4 * c + 4] = reparameter(p[4 * c : 4 * c + 4], u0, u1)
-    return p
-
-
-def reparameter(c: Sequence[float], u0: float, u1: float) -> list[float]:
-    """Coefficients of the cubic c in v, where u = u0 + (u1 - u0) v."""
-    h = u1 - u0
-    c0, c1, c2, c3 = c
-    return [
-        c0 + u0 * (c1 + u0 * (c2 + u0 * c3)),
-        h * (c1 + u0 * (2.0 * c2 + u0 * 3.0 * c3)),
-        h * h * (c2 + 3.0 * c3 * u0),
-        h * h * h * c3,
-    ]
-
-
-def reverse(kind: int, row: Sequence[float]) -> list[float]:
-    """The same curve run from its end to its start."""
-    return cut(kind, row, 1.0, 0.0)
-
-
-def embed(plane: int, u: float, v: float, w: float) -> Vector:
+def _embed(plane: int, u: float, v: float, w: float) -> Vector:
     """Plane coordinates and the third axis as X, Y, Z (in space: as they are)."""
     if plane == 1:
         return v, w, u
@@ -64,7 +28,7 @@ def embed(plane: int, u: float, v: float, w: float) -> Vector:
 
 
 class Way:
-    """The arc length along one curve and its inverse: s in 0..1 of the length <-> u in 0..1."""
+    """The arc length along one curve: u in 0..1 at a share 0..1 of the length."""
 
     def __init__(self, kind: int, row: Sequence[float]) -> None:
         self.kind = kind
@@ -88,7 +52,7 @@ def tangent_at(kind: int, plane: int, row: Floats, u: float, rise: float) -> Vec
     if plane != SPACE:
         z = rise
     size = (x * x + y * y + z * z) ** 0.5
-    return embed(plane, x / size, y / size, z / size) if size > 0.0 else (0.0, 0.0, 0.0)
+    return _embed(plane, x / size, y / size, z / size) if size > 0.0 else (0.0, 0.0, 0.0)
 
 
 def curvature_at(kind: int, plane: int, row: Floats, u: float) -> Vector:
@@ -102,4 +66,4 @@ def curvature_at(kind: int, plane: int, row: Floats, u: float) -> Vector:
     if size == 0.0:
         return 0.0, 0.0, 0.0
     k = (dd - (dd @ d) / size * d) / size
-    return embed(plane, float(k[0]), float(k[1]), float(k[2]))
+    return _embed(plane, float(k[0]), float(k[1]), float(k[2]))
