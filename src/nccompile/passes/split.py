@@ -28,7 +28,7 @@ import numpy as np
 from nccompile.errors import UsageError
 from nccompile.kernels.legs import cut_legs
 from nccompile.passes.base import Context, Pass, bounded
-from nccompile.passes.edit import Links, Rows, compose, geometry
+from nccompile.passes.edit import Links, Pieces, Rows, geometry, put_pieces
 from nccompile.passes.measure import deviation
 from nccompile.toolpath.columns import CURVE_PARAMETERS, Curves, Floats, Kind, Toolpath
 
@@ -90,33 +90,19 @@ def split_rows(path: Toolpath, picked: Rows, at: Floats) -> tuple[Toolpath, Link
               cut, from its start [mm].
     Returns:  the path;  what became of what;  Shape (m,), the rows that begin at the cuts.
     """
-    n, m = len(path), len(picked)
-    number = np.ones(n, np.intp)
-    number[picked] = 2
-    origin = np.repeat(np.arange(n), number)
-    tails: Rows = np.cumsum(number)[picked] - 1
-    heads = tails - 1
-    length = path.length[picked]
+    m, length, start = len(picked), path.length[picked], path.starts()[picked]
     rows, point, end = np.empty((2 * m, CURVE_PARAMETERS)), np.empty((2 * m, 3)), np.empty((2 * m, 3))
-    none = np.zeros(m)
+    owner, heads = np.repeat(picked, 2), 2 * np.arange(m)
+    share = np.stack([at / length, np.ones(m)], axis=1).ravel()
     cut_legs(
-        *geometry(path), path.length, np.concatenate([picked, picked]), np.concatenate([none, at]),
-        np.concatenate([at, length]), rows, point, end,
+        *geometry(path), path.length, owner, np.stack([np.zeros(m), at], axis=1).ravel(),
+        np.stack([at, length], axis=1).ravel(), rows, point, end,
     )  # fmt: skip
-    share = at / length
-    target = path.target[origin]
-    start = path.starts()[picked]
-    target[heads] = start + share[:, None] * (path.target[picked] - start)
-    target[heads, :3] = end[:m]
-    curve, p0, p1 = path.curve[origin], np.zeros(len(origin)), np.ones(len(origin))
-    p0[tails], p1[heads] = share, share
-    curved = np.flatnonzero(path.curve[picked] >= 0)
-    for place, offset in ((heads, 0), (tails, m)):
-        curve[place[curved]] = len(path.curves) + offset + curved
-    planes = np.zeros(m, np.uint8)
-    planes[curved] = path.curves.plane[path.curve[picked[curved]]]
-    curves = Curves(
-        np.concatenate([path.curves.plane, planes, planes]), np.vstack([path.curves.parameters, rows])
-    )
-    links = Links(origin, p0, p1, np.arange(len(origin)), np.zeros(len(origin)), np.ones(len(origin)))
-    return compose(path, origin, path.kind[origin], target, curve, curves, links), links, tails
+    target = path.target[owner]
+    target[heads] = start + share[heads, None] * (path.target[picked] - start)
+    target[heads, :3] = end[heads]
+    planes = np.zeros(2 * m, np.uint8)
+    curved = np.flatnonzero(path.curve[owner] >= 0)
+    planes[curved] = path.curves.plane[path.curve[owner[curved]]]
+    out, links = put_pieces(path, Pieces(owner, share, path.kind[owner], target, Curves(planes, rows)))
+    return out, links, picked + np.arange(m) + 1
