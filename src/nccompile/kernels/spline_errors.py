@@ -30,6 +30,91 @@ _SLOW = 0.05  # squared speed below which a step to the foot is cut short
 
 
 @kernel
+def _span_of(t: Floats, spans: int, span: int, x: float) -> int:
+    """The span that holds the parameter x, looked for from one near it on."""
+    while span < spans - 1 and x >= t[span + 4]:
+        span += 1
+    while span > 0 and x < t[span + 3]:
+        span -= 1
+    return span
+
+
+@kernel
+def _step(data: Floats, i: int, rows: Floats, span: int, v: float) -> float:
+    """By how much v grows to the foot of data[i] on the cubic of a span, by one step of Newton's method."""
+    step = 0.0
+    square = 0.0
+    for c in range(data.shape[1]):
+        p1 = float(rows[span, 4 * c + 1])
+        p2 = float(rows[span, 4 * c + 2])
+        p3 = float(rows[span, 4 * c + 3])
+        d = p1 + v * (2.0 * p2 + 3.0 * v * p3)
+        step += d * (float(data[i, c]) - (float(rows[span, 4 * c]) + v * (p1 + v * (p2 + v * p3))))
+        square += d * d
+    return step / max(square, _SLOW)
+
+
+@kernel
+def _inside(
+    off: Floats, off_before: Floats, bend: Floats, bend_before: Floats, h: float, dims: int
+) -> tuple[float, float, float]:  # fmt: skip
+    """(|Dm|, |D0 - 2 Dm + D1|, max |D'''|) of a chord of h in one span, from D and S'' at its ends."""
+    middle = second = third = 0.0
+    for c in range(dims):
+        # of a cubic: D(1/2) = (D0 + D1) / 2 - (D''0 + D''1) / 16, D'' = - S'' h²
+        sum_ = float(off[c]) + float(off_before[c])
+        m = 0.5 * sum_ + 0.0625 * h * h * (float(bend[c]) + float(bend_before[c]))
+        k = sum_ - 2.0 * m
+        r = float(bend[c]) - float(bend_before[c])
+        middle += m * m
+        second += k * k
+        third += r * r
+    return sqrt(middle), sqrt(second), h * h * sqrt(third)
+
+
+@kernel
+def _across(
+    points: Floats, i: int, off: Floats, off_before: Floats, t: Floats, rows: Floats, first: int, last: int,
+    x_before: float, h: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """The same of the chord that ends at vertex i and runs over the knots between the spans first..last."""
+    dims = points.shape[1]
+    half = x_before + 0.5 * h
+    j = first
+    while j < last and half >= t[j + 4]:
+        j += 1
+    v = half - float(t[j + 3])
+    middle = second = third = 0.0
+    for c in range(dims):
+        place = float(rows[j, 4 * c]) + v * (
+            float(rows[j, 4 * c + 1]) + v * (float(rows[j, 4 * c + 2]) + v * float(rows[j, 4 * c + 3]))
+        )
+        m = 0.5 * (float(points[i, c]) + float(points[i - 1, c])) - place
+        k = float(off[c]) + float(off_before[c]) - 2.0 * m
+        middle += m * m
+        second += k * k
+    for j in range(first, last + 1):
+        r = 0.0
+        for c in range(dims):
+            r += float(rows[j, 4 * c + 3]) * float(rows[j, 4 * c + 3])
+        third = max(third, 6.0 * h * h * h * sqrt(r))
+    return sqrt(middle), sqrt(second), third
+
+
+@kernel
+def _bound(far: float, far_before: float, middle: float, second: float, third: float) -> float:
+    """The bound of |D| along a chord (see the module)."""
+    bump = 0.125 * second
+    bound = max(middle, far, far_before)
+    for side in range(2):
+        ends = far if side == 0 else far_before
+        apart = abs(ends - middle)
+        if 4.0 * bump > apart:
+            bound = max(bound, 0.5 * (ends + middle) + bump + apart * apart / (16.0 * bump))
+    return bound + _REST * third
+
+
+@kernel
 def chord_errors(
     points: Floats, data: Floats, t: Floats, spans: int, rows: Floats, u: Floats, tangent: Floats, errors: Floats,
     chords: bool,
@@ -59,27 +144,11 @@ def chord_errors(
     for i in range(last + 1):
         x = float(u[i])
         if 0 < i < last:
-            while span < spans - 1 and x >= t[span + 4]:
-                span += 1
-            while span > 0 and x < t[span + 3]:
-                span -= 1
-            v = x - float(t[span + 3])
-            step = 0.0
-            square = 0.0
-            for c in range(dims):
-                p1 = float(rows[span, 4 * c + 1])
-                p2 = float(rows[span, 4 * c + 2])
-                p3 = float(rows[span, 4 * c + 3])
-                d = p1 + v * (2.0 * p2 + 3.0 * v * p3)
-                step += d * (float(data[i, c]) - (float(rows[span, 4 * c]) + v * (p1 + v * (p2 + v * p3))))
-                square += d * d
-            step /= max(square, _SLOW)
+            span = _span_of(t, spans, span, x)
+            step = _step(data, i, rows, span, x - float(t[span + 3]))
             most = 0.5 * abs(float(u[i + 1]) - x_before)
             x = min(max(x + min(max(step, -most), most), x_before), end)
-        while span < spans - 1 and x >= t[span + 4]:
-            span += 1
-        while span > 0 and x < t[span + 3]:
-            span -= 1
+        span = _span_of(t, spans, span, x)
         u[i] = x
         v = x - float(t[span + 3])
         square = 0.0
@@ -119,49 +188,13 @@ def chord_errors(
             worst = max(worst, bound)
             errors[span] = max(float(errors[span]), bound)
         elif not quiet:
-            middle = 0.0
-            second = 0.0
-            third = 0.0
             if span == span_before:
-                for c in range(dims):
-                    # of a cubic: D(1/2) = (D0 + D1) / 2 - (D''0 + D''1) / 16, D'' = - S'' h²
-                    sum_ = float(off[c]) + float(off_before[c])
-                    m = 0.5 * sum_ + 0.0625 * h * h * (float(bend[c]) + float(bend_before[c]))
-                    k = sum_ - 2.0 * m
-                    r = float(bend[c]) - float(bend_before[c])
-                    middle += m * m
-                    second += k * k
-                    third += r * r
-                third = h * h * sqrt(third)
+                middle, second, third = _inside(off, off_before, bend, bend_before, h, dims)
             else:
-                half = x_before + 0.5 * h
-                j = span_before
-                while j < span and half >= t[j + 4]:
-                    j += 1
-                v = half - float(t[j + 3])
-                for c in range(dims):
-                    place = float(rows[j, 4 * c]) + v * (
-                        float(rows[j, 4 * c + 1])
-                        + v * (float(rows[j, 4 * c + 2]) + v * float(rows[j, 4 * c + 3]))
-                    )
-                    m = 0.5 * (float(points[i, c]) + float(points[i - 1, c])) - place
-                    k = float(off[c]) + float(off_before[c]) - 2.0 * m
-                    middle += m * m
-                    second += k * k
-                for j in range(span_before, span + 1):
-                    r = 0.0
-                    for c in range(dims):
-                        r += float(rows[j, 4 * c + 3]) * float(rows[j, 4 * c + 3])
-                    third = max(third, 6.0 * h * h * h * sqrt(r))
-            middle = sqrt(middle)
-            bump = 0.125 * sqrt(second)
-            bound = max(middle, far, far_before)
-            for side in range(2):
-                ends = far if side == 0 else far_before
-                apart = abs(ends - middle)
-                if 4.0 * bump > apart:
-                    bound = max(bound, 0.5 * (ends + middle) + bump + apart * apart / (16.0 * bump))
-            bound += _REST * third
+                middle, second, third = _across(
+                    points, i, off, off_before, t, rows, span_before, span, x_before, h
+                )  # fmt: skip
+            bound = _bound(far, far_before, middle, second, third)
             worst = max(worst, bound)
             for j in range(span_before, span + 1):
                 errors[j] = max(float(errors[j]), bound)
