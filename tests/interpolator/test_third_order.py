@@ -13,7 +13,7 @@ from nccompile.kernels.interpolator_stop import brake_phases, cube_root, step_ph
 from nccompile.runtime.interpolator import Interpolator
 from nccompile.runtime.ring import RingBuffer
 from nccompile.toolpath.columns import Floats, Toolpath
-from tests.interpolator.third_order import ACCEL, DECEL, JERK, derivatives, plans
+from tests.interpolator.third_order import ACCEL, DECEL, JERK, derivatives, levels, plan_of, plans
 
 TOP = 150.0
 SLACK = 1.0 + 1e-6
@@ -96,6 +96,19 @@ def test_stops_and_overrides_stay_inside_from_any_state(
     assert ipo.outputs.done
     assert ways.sum() == pytest.approx(path.length.sum(), abs=1e-9)
     assert np.array_equal(ipo.outputs.set_position, path.end)
+
+
+@pytest.mark.parametrize(("velocity", "cycles"), [(10.0, (1384, 1388, 1392)), (30.0, (2033, 2037, 2043))])
+def test_an_override_just_before_a_stop_stays_inside(velocity: float, cycles: tuple[int, ...]) -> None:
+    path = plan_of(levels([velocity], [0.05]))
+    for n in cycles:
+        assert_inside(run(block(path, 1e-4), [(n, ("override", 0.01))], 60_000, 3000), 1e-4)
+
+
+@pytest.mark.parametrize(("velocity", "released"), [(10.0, 604), (20.0, 458), (30.0, 571)])
+def test_the_jerk_is_greatest_where_the_change_of_a_rate_turns(velocity: float, released: int) -> None:
+    path = plan_of(levels([velocity], [0.05], 0.5 * JERK))
+    assert_inside(run(block(path, 1e-4), [(0, ("override", 0.3))], 60_000, released), 1e-4)
 
 
 @settings(max_examples=8, deadline=None)

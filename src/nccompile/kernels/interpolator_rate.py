@@ -26,8 +26,14 @@ FITS, TOO_SHARP, OPEN = 0, 1, 2
 _STEPS = 64
 """Places at which a change is compared with the limits, besides all ends of rows."""
 
+_FEWEST = 3
+"""Places that a change has to have before a stop of the plan: fewer cannot tell what happens on the way there."""
+
 _SWING, _PLACES = 0.05, 32
 """Rows that swing the acceleration by more than this part of the limit are looked at in so many places each."""
+
+_BESIDE = 1e-9
+"""Part of a time by which a place is just before it."""
 
 _ROOM = 0.05
 """Part of a change's own acceleration and jerk that is kept free for what happens between those places."""
@@ -125,7 +131,7 @@ def change_fits(
 
     From the plan's time `tau` in `row`, which the plan enters with v0 and a0.  Returns FITS, TOO_SHARP or OPEN, and
     where the plan is at the end of the change: row, time in it, its v0 and a0.  A change that reaches a stop of
-    the plan fits: at rest the rate may be anything.
+    the plan fits, since at rest the rate may be anything, but it has to begin `_FEWEST` places before the stop.
     """
     v1, a1 = rows.v_end[row], rows.a_end[row]
     total, j = constant_jerk(rows.length[row], v0, v1, a0, a1)
@@ -134,6 +140,7 @@ def change_fits(
     gone = -tau  # the plan's time at the start of the row, counted from now
     r, r1, r2 = r0, 0.0, 0.0
     t = 0.0
+    places = 0
     while True:
         before, before1, before2 = r, r1, r2
         r, r1, r2 = rate_at(t, r0, dr, ramp, level)
@@ -148,7 +155,7 @@ def change_fits(
                 return TOO_SHARP, row, 0.0, 0.0, 0.0
             row += 1
             if v1 == 0.0 or (row >= tail and complete == 1):
-                return FITS, row, 0.0, 0.0, 0.0
+                return FITS if places > _FEWEST or r0 == 0.0 else TOO_SHARP, row, 0.0, 0.0, 0.0
             if row >= tail:
                 return OPEN, row, 0.0, 0.0, 0.0
             gone += total
@@ -168,10 +175,14 @@ def change_fits(
             return TOO_SHARP, row, 0.0, 0.0, 0.0
         if t >= end:
             break
+        places += 1
         step = end / _STEPS
         if abs(a1 - a0) > _SWING * rows.accel[row]:
             step = min(step, total / _PLACES)
-        t = min(end, t + step)
+        # r'' jumps at the ends of the three parts of a change: a place just before each and one on it.
+        edge = ramp if t < ramp else (ramp + level if t < ramp + level else end)
+        beside = edge * (1.0 - _BESIDE)
+        t = min(t + step, beside if t < beside else edge)
     goal = plan_time(end, r0, dr, ramp, level)
     return FITS, row, goal - gone, v0, a0
 
