@@ -45,6 +45,9 @@ _TRIES_AT_REST = 40
 _NEARLY = 0.9
 """Part of the rate that is set off to where the rate itself does not fit: below 1 there is always room."""
 
+_GOALS, _LESS = 8, 0.5
+"""Rates that are set off to, and the factor to the next where the rows for one are not there yet."""
+
 _LANDING = 1e-9
 """Part of a row (and mm) by which a table may end beside the end of the row it was made for."""
 
@@ -128,21 +131,19 @@ def set_off(rows: Rows, inputs: Inputs, tail: int, complete: int, f: Floats, i: 
         if found == FITS:
             _take_table(0.0, 0.0, GO, f, i)
         return found
+    goal = min(inputs.override, 1.0)
     if complete == 0 and inputs.patient == 0 and rows.v_end[row] > 0.0:
-        # Not before the path could be stopped again behind this row within the rows at hand.
-        length, v, a = rows.length[row], rows.v_end[row], rows.a_end[row]
-        if plan_stop(rows, row, length, v, a, SLOW, 0.0, 0.0, tail, f, i) == OPEN:
+        goal = _stoppable(rows, row, goal, inputs.cycle, tail, f, i)
+        if goal == 0.0:
             i[STARVED] = 1
             return OPEN
-    wanted = min(inputs.override, 1.0)
     begin_planned(rows, row, f[S], f, i)
     if f[V] == 0.0 and f[A] == 0.0:  # the plan rests here too
-        _set_rate(wanted, f, i)
+        _set_rate(goal, f, i)
         return FITS
     f[RATE] = 0.0
     found = TOO_SHARP
-    for part in range(2):
-        goal = wanted if part == 0 else _NEARLY * wanted
+    for part in range(_GOALS):
         found, ramp, level = find_change(
             rows,
             row,
@@ -159,11 +160,28 @@ def set_off(rows: Rows, inputs: Inputs, tail: int, complete: int, f: Floats, i: 
         )
         if found == OPEN and inputs.patient == 1:
             break
-        if found != TOO_SHARP:
+        if found == FITS or (found == OPEN and part == _GOALS - 1):
             _change_rate(goal, ramp, level, f, i)
             return FITS
+        goal *= _NEARLY if found == TOO_SHARP else _LESS
     f[V] = 0.0
     return found
+
+
+@kernel
+def _stoppable(rows: Rows, row: int, rate: float, cycle: float, tail: int, f: Floats, i: State) -> float:
+    """The rate, or the greatest of some below it, from which a stop a cycle behind a row fits into the rows at hand.
+
+    0.0 if it does from none of them.
+    """
+    length = rows.length[row]
+    for _ in range(_GOALS):
+        v, a = rate * rows.v_end[row], rate * rate * rows.a_end[row]
+        v, a = _next_at_most(rows, row, length, v, a, cycle, tail)
+        if plan_stop(rows, row, length, v, a, SLOW, 0.0, v * cycle, tail, f, i) != OPEN:
+            return rate
+        rate *= _LESS
+    return 0.0
 
 
 @kernel
@@ -241,7 +259,7 @@ def _choose_rate(rows: Rows, inputs: Inputs, tail: int, complete: int, f: Floats
         wanted = 1.0
     if wanted == rate or (wanted > 1.0 and (f[A] != 0.0 or f[JERK] != 0.0)):
         return FITS
-    for part in range(3 if wanted > 1.0 and rate >= 1.0 and wanted > rate else 1):
+    for part in range(3):
         goal = rate + (wanted - rate) * (1.0 - 0.4 * part)
         if part == 0:
             goal = wanted
@@ -250,9 +268,11 @@ def _choose_rate(rows: Rows, inputs: Inputs, tail: int, complete: int, f: Floats
         )
         if found == OPEN and inputs.patient == 1:
             return OPEN
-        if found == FITS or (found == OPEN and goal <= 1.0):
+        if found == FITS:
             _change_rate(goal - rate, ramp, level, f, i)
             return FITS
+        if found == TOO_SHARP and wanted <= max(rate, 1.0):
+            break
     return FITS
 
 
