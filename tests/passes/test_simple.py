@@ -325,3 +325,18 @@ def test_another_start_of_a_contour_that_begins_the_path_moves_nothing() -> None
     assert out.start[:2].tolist() == [10, 10]
     assert out.target[:, :2].tolist() == [[0, 10], [0, 0], [10, 0], [10, 10]]
     assert report.deviation == 0.0
+
+
+def test_curves_with_more_pieces_than_there_is_room_for_at_once() -> None:
+    sketch = Sketch()
+    for radius in (50.0, 80.0, 100.0, 120.0):
+        sketch.arc(radius, 6.0, 0.5, 1.0)
+    path = sketch.path()
+    out, report = run(Transform(roll=20.0, pitch=30.0, tolerance=1e-6), path)
+    assert len(out) > 4 * 16
+    assert report.deviation is not None
+    assert report.deviation <= 1e-6
+    assert sorted(set(out.line.tolist())) == [1, 2, 3, 4]
+    lines, _ = run(Flatten(length=0.01, arcs=True), path)
+    assert np.bincount(lines.line)[1:].tolist() == [30_000, 48_000, 60_000, 72_000]
+    assert lines.target[lines.line.searchsorted([2, 3, 4, 5]) - 1].tolist() == path.target.tolist()
