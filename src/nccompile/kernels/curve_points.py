@@ -19,8 +19,8 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 
 __all__ = [
-    "ARC", "ELLIPSE", "POLYNOMIAL", "derivative", "derivative3", "point", "point3", "second", "second3",
-    "speed", "tangent", "tangent3",
+    "ARC", "ELLIPSE", "POLYNOMIAL", "derivative", "derivative3", "point", "point3", "put_hermite", "second",
+    "second3", "speed", "tangent", "tangent3",
 ]  # fmt: skip
 
 Floats: TypeAlias = npt.NDArray[np.float64]
@@ -155,3 +155,13 @@ def tangent(kind: int, p: Floats, u: float) -> tuple[float, float]:
     """The unit tangent at u of a plane curve; (0, 0) for a curve without extent."""
     x, y, _ = tangent3(kind, p, u)
     return x, y
+
+
+@kernel
+def put_hermite(p0: float, d0: float, p1: float, d1: float, out: Floats, at: int) -> None:
+    """Writes the powers of the cubic from p0 to p1 with the derivatives d0 and d1 at its ends."""
+    step = p1 - p0
+    out[at] = p0
+    out[at + 1] = d0
+    out[at + 2] = 3.0 * step - 2.0 * d0 - d1
+    out[at + 3] = d0 + d1 - 2.0 * step

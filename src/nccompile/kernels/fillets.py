@@ -20,7 +20,7 @@ import numpy.typing as npt
 from nccompile.kernels import kernel
 from nccompile.kernels.arcs import through
 from nccompile.kernels.blends import blend_cuts
-from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats
+from nccompile.kernels.curve_points import ARC, POLYNOMIAL, Floats, put_hermite
 from nccompile.kernels.curves import NODES, in_plane_length
 from nccompile.kernels.legs import (
     CORNER,
@@ -102,11 +102,7 @@ def _space_arc(one: Floats, two: Floats, turn: float, radius: float, count: int,
             sine = sin(part * (k + 1))
             p1 = float(two[c]) if k == count - 1 else center - radius * (cosine * inward - sine * along)
             d1 = size * (cosine * along + sine * inward)
-            step = p1 - p0
-            rows[k, 4 * c] = p0
-            rows[k, 4 * c + 1] = d0
-            rows[k, 4 * c + 2] = 3.0 * step - 2.0 * d0 - d1
-            rows[k, 4 * c + 3] = d0 + d1 - 2.0 * step
+            put_hermite(p0, d0, p1, d1, rows[k], 4 * c)
             p0 = p1
             d0 = d1
 

@@ -24,6 +24,7 @@ from nccompile.kernels.curve_points import (
     Floats,
     derivative,
     point,
+    put_hermite,
     second,
     tangent,
 )
@@ -76,13 +77,7 @@ def _beside(kind: int, p: Floats, d: float, u: float, out: Floats) -> None:
 def _hermite(q0: Floats, q1: Floats, h: float, row: Floats) -> None:
     """The cubic with the values of q0 and q1 and h times their derivatives at its ends into row, Shape (12,)."""
     for c in range(2):
-        step = float(q1[c]) - float(q0[c])
-        a = h * float(q0[2 + c])
-        b = h * float(q1[2 + c])
-        row[4 * c] = q0[c]
-        row[4 * c + 1] = a
-        row[4 * c + 2] = 3.0 * step - 2.0 * a - b
-        row[4 * c + 3] = a + b - 2.0 * step
+        put_hermite(float(q0[c]), h * float(q0[2 + c]), float(q1[c]), h * float(q1[2 + c]), row, 4 * c)
     for c in range(8, 12):
         row[c] = 0.0
 

@@ -13,7 +13,7 @@ from math import sqrt
 import numpy as np
 
 from nccompile.kernels import kernel
-from nccompile.kernels.curve_points import Floats
+from nccompile.kernels.curve_points import Floats, put_hermite
 from nccompile.kernels.curves import NODES
 from nccompile.kernels.legs import STATE, Kinds, Wholes, row_at, tabulate_row
 
@@ -24,20 +24,6 @@ MOST = 4096
 
 _CHECKS = (0.1, 0.22, 0.35, 0.5, 0.65, 0.78, 0.9)
 _MARGIN = 0.9  # of the tolerance that is used
-
-
-@kernel
-def _hermite(one: Floats, two: Floats, size: float, out: Floats) -> None:
-    """Writes the cubic from state `one` to `two`, with derivatives of `size` [mm] in their directions, to out (12,)."""
-    for c in range(3):
-        p0 = float(one[c])
-        d0 = size * float(one[3 + c])
-        d1 = size * float(two[3 + c])
-        step = float(two[c]) - p0
-        out[4 * c] = p0
-        out[4 * c + 1] = d0
-        out[4 * c + 2] = 3.0 * step - 2.0 * d0 - d1
-        out[4 * c + 3] = d0 + d1 - 2.0 * step
 
 
 @kernel
@@ -84,7 +70,16 @@ def space_cubics(
             high = float(todo[top - 1])
             row_at(kinds, planes, rows, points, length, i, nodes, 0, table, high * whole, two)
             row = out_rows[count]
-            _hermite(one, two, (high - low) * whole, row)
+            size = (high - low) * whole
+            for c in range(3):
+                put_hermite(
+                    float(one[c]),
+                    size * float(one[3 + c]),
+                    float(two[c]),
+                    size * float(two[3 + c]),
+                    row,
+                    4 * c,
+                )
             worst = 0.0
             for v in _CHECKS:
                 s = (low + v * (high - low)) * whole
