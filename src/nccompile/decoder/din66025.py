@@ -16,6 +16,7 @@ from nccompile.decoder.tables import Group
 from nccompile.decoder.variables import INT_MAX, INT_MIN
 from nccompile.decoder.words import Statement, evaluate, set_modal
 from nccompile.diagnostics import Diagnostics
+from nccompile.errors import Cancelled
 from nccompile.kernels import compiled
 from nccompile.parser import Block, Reader, parse, report_control
 from nccompile.parser.scanner import Table, survey, tables
@@ -35,6 +36,9 @@ _JUMP = re.compile(r"[Gg](?:0*20(?![0-9])|\$)")
 
 _PART = 1 << 16
 """Characters that are searched at a time: a millisecond."""
+
+_ASKED = 8
+"""Statements after which is asked whether the program is still wanted: at most some milliseconds."""
 
 
 def axes_of(text: str, options: DecodeOptions) -> tuple[str, ...]:
@@ -85,6 +89,7 @@ class Din66025:
         self._jumps = jumps
         self._flow: Flow | None = None
         self._wanted = wanted
+        self._taken = 0
         self._motion = Motion(self._core)
         self._skip = options.skip_blocks
 
@@ -165,6 +170,9 @@ class Din66025:
             at += 1
 
     def _take(self, block: Block) -> None:
+        self._taken += 1
+        if self._taken % _ASKED == 0 and self._wanted is not None and not self._wanted():
+            raise Cancelled
         if not (block.skip and self._skip):
             self._run(block)
 

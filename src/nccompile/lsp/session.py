@@ -32,8 +32,8 @@ PAUSE, LONGEST_PAUSE = 0.02, 0.2
 IDLE = 30.0
 """Time without edits after which garbage is looked for [s]: among millions of words that takes a while."""
 
-AT_ONCE = 4
-"""Documents that are checked at a time: a loop that never ends is decoded for seconds, which only its own waits for."""
+WORK, REST = 0.002, 0.0001
+"""How long a check works before it lets others go first, and for how long [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -47,17 +47,47 @@ class Wish:
 
     def __init__(self) -> None:
         self.lives = True
+        self._rested = 0.0
 
     def __call__(self) -> bool:
-        """Asked from the thread that does the work."""
+        """Asked from the thread that does the work, which rests a moment each time it has worked for a while.
+
+        A thread of many short kernel calls gives the interpreter's lock away at each, and takes it back before any
+        other thread has woken up: an edit waited for half a second.
+        """
+        now = time.perf_counter()
+        if now - self._rested > WORK:
+            time.sleep(REST)
+            self._rested = now
         return self.lives
+
+
+class Threads:
+    """Those of one document: its checks run one after the other, but wait for no other document, whose loop may be
+    endless."""
+
+    def __init__(self) -> None:
+        self.checks = Worker("check")
+        self.timings = Worker("timing")
+        self.timings.start(read_by_grammar, 1, "N1")  # loads Lark, which the first edit would wait for
+
+    def finish(self) -> None:
+        """The document was closed: what runs for it gives up by itself."""
+        self.checks.finish()
+        self.timings.finish()
+
+    def shut_down(self) -> None:
+        """Gives up what has not begun."""
+        self.checks.shut_down()
+        self.timings.shut_down()
 
 
 class Work:
     """The analysis of one version of a document, under way or done."""
 
-    def __init__(self, document: Document, loop: asyncio.AbstractEventLoop) -> None:
+    def __init__(self, document: Document, threads: Threads, loop: asyncio.AbstractEventLoop) -> None:
         self.document = document
+        self.threads = threads
         self.version = document.version
         self.wish = Wish()
         self.checked: asyncio.Future[Analysis] = loop.create_future()
@@ -92,17 +122,17 @@ class Session:
         self.documents: dict[str, Document] = {}
         self._publish, self._say, self._done = publish, say, done
         self._works: dict[str, Work] = {}
-        self._checks = Worker("check", AT_ONCE)
-        self._timings = Worker("timing", AT_ONCE)
+        self._threads: dict[str, Threads] = {}
         self._warming = Warming()
         self._said: set[str] = set()
         self._idle: asyncio.TimerHandle | None = None
-        self._timings.start(read_by_grammar, 1, "N1")  # loads Lark, which the first edit would wait for
         gc.disable()  # an analysis leaves next to no cycles; see IDLE
 
     def open(self, document: Document) -> None:
         """A document was opened, or opened again."""
         self.documents[document.uri] = document
+        if document.uri not in self._threads:
+            self._threads[document.uri] = Threads()
         self._warming.start(len(document.text.lines))
         self.changed(document)
 
@@ -111,6 +141,9 @@ class Session:
         work = self._works.pop(uri, None)
         if work is not None:
             work.drop()
+        threads = self._threads.pop(uri, None)
+        if threads is not None:
+            threads.finish()
         document = self.documents.pop(uri, None)
         if document is not None:
             document.shown = []
@@ -124,7 +157,7 @@ class Session:
         if before is not None:
             before.drop()
         loop = asyncio.get_running_loop()
-        work = self._works[document.uri] = Work(document, loop)
+        work = self._works[document.uri] = Work(document, self._threads[document.uri], loop)
         work.task = loop.create_task(self._run(work))
 
     def settings_changed(self) -> None:
@@ -137,8 +170,8 @@ class Session:
         """Gives up what is under way."""
         for work in self._works.values():
             work.drop()
-        self._checks.shut_down()
-        self._timings.shut_down()
+        for threads in self._threads.values():
+            threads.shut_down()
         self._warming.stop()
 
     async def analysis(self, uri: str, *, with_times: bool = False) -> tuple[Document, Analysis]:
@@ -165,7 +198,7 @@ class Session:
             await asyncio.sleep(pause)  # times are for those who read, not for those who type
             if not work.wanted:
                 return
-            times: Times | None = await self._timings.run(timed, analysis, work.wish)
+            times: Times | None = await work.threads.timings.run(timed, analysis, work.wish)
             analysis.times = times
             if work.wanted:
                 work.timed.set_result(analysis)
@@ -185,13 +218,13 @@ class Session:
         snapshot, settings = document.snapshot(), self._settings(document)
         outdated = snapshot.nodes
         try:
-            analysis = await self._checks.run(_analysed, snapshot, work, settings)
+            analysis = await work.threads.checks.run(_analysed, snapshot, work, settings)
             if not work.wanted:
                 raise Cancelled
             document.analysis = analysis
             outdated, document.nodes = document.nodes, list(snapshot.nodes)
         finally:
-            self._checks.start(forget, outdated)
+            work.threads.checks.start(forget, outdated)
         document.shown = analysis.report.ordered()
         document.seconds = time.perf_counter() - begun
         self._publish(document, True)

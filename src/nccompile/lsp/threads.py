@@ -19,10 +19,10 @@ R = TypeVar("R")
 
 
 class Worker:
-    """A thread that does one thing after the other, or a few that share what there is to do."""
+    """A thread that does one thing after the other."""
 
-    def __init__(self, name: str, threads: int = 1) -> None:
-        self._pool = ThreadPoolExecutor(threads, thread_name_prefix=name)
+    def __init__(self, name: str) -> None:
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix=name)
 
     async def run(self, function: Callable[P, R], *arguments: P.args, **named: P.kwargs) -> R:
         """What a function gives or raises; given up, it is not begun any more, but if begun goes on to its end."""
@@ -41,6 +41,10 @@ class Worker:
         """Has something done that nobody waits for."""
         with suppress(RuntimeError):  # after the end nothing has to be done any more
             self._pool.submit(function, *arguments, **named)
+
+    def finish(self) -> None:
+        """Ends the thread when all is done that was asked for."""
+        self._pool.shutdown(wait=False)
 
     def shut_down(self) -> None:
         """Gives up what has not begun."""
