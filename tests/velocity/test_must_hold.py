@@ -49,6 +49,21 @@ def test_a_larger_window_is_never_slower(planner: str, path: Toolpath, size: int
 
 
 @pytest.mark.parametrize("planner", PLANNERS)
+@pytest.mark.parametrize(
+    "lengths", [(1.0, 0.0, 1.0), (5.0, 0.0, 1.0, 0.0), (0.0, 0.3, 0.0, 0.0, 5.0, 0.0, 0.3)]
+)
+def test_a_window_that_ends_at_rows_without_length_loses_no_time(
+    planner: str, lengths: tuple[float, ...]
+) -> None:
+    builder = Builder()
+    for length in lengths:
+        builder.line(length, 0.0, 150.0, 1000.0, 1000.0)
+    for size in (1, 2):
+        times = times_by_window(cut(builder.path(), size), GENERIC[planner])
+        assert all(large <= small * NEVER_SLOWER for small, large in pairwise(times)), times
+
+
+@pytest.mark.parametrize("planner", PLANNERS)
 @settings(max_examples=8, deadline=None)
 @given(path=brisk(6, stops=False))
 def test_set_positions_lie_on_the_path(planner: str, path: Toolpath) -> None:

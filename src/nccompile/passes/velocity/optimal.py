@@ -80,6 +80,9 @@ class OptimalPlanner:
         )
         if self.settings.window is not None:
             rows = max(rows, min(known, len(path) - self.settings.window))
+        if rows < len(path):
+            # The first row held has a length, for the bend behind rows without one is that from the row before them.
+            rows = int(np.max(np.flatnonzero(path.length[: rows + 1] > 0.0), initial=0))
         if rows == 0:
             return
         done = path.rows(0, rows)
